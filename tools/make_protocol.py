@@ -42,6 +42,7 @@ PARTS = (
     protocol.Placement,
     protocol.Reference,
     protocol.StageCamera,
+    protocol.Preset,
 )
 
 

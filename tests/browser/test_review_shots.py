@@ -56,6 +56,31 @@ def test_ten_frames_are_simulated_and_scrubbed(opened: Any, folder: Path):
     assert not review.errors
 
 
+def test_frames_are_played_between_in_and_out_points_at_a_rate(opened: Any):
+    review: Review = opened("small.shot.toml")
+    review.page.get_by_role("button", name="Run", exact=True).click()
+    review.until("ringlet.timeline.count == 4 && ringlet.model.timeline.state == 'done'")
+    canvas = review.page.locator("main canvas")
+    for frame, key in ((2, "i"), (3, "o")):
+        review.get(f"ringlet.timeline.show({frame})")
+        canvas.press(key)
+    assert review.page.locator(".left-out").count() == 2
+    assert "plays 2 to 3" in review.page.locator(".frame-told").inner_text()
+    canvas.press("End")
+    assert review.get("ringlet.timeline.current") == 3
+    review.get("(window.played = new Set(), setInterval(() => played.add(ringlet.timeline.current), 5))")
+    review.page.get_by_label("Frames a second of playback").select_option("60")
+    canvas.press(" ")
+    review.until("played.size == 2 && played.has(2) && played.has(3)")
+    review.page.wait_for_timeout(500)
+    assert review.get("[...played].sort()") == [2, 3]
+    canvas.press(" ")
+    review.get("ringlet.timeline.show(2)")
+    canvas.press("i")
+    assert review.page.locator(".left-out").count() == 1
+    assert not review.errors
+
+
 def test_a_changed_cloth_material_is_simulated(opened: Any, folder: Path):
     write_wear(folder)
     shot = folder / "small.shot.toml"

@@ -40,6 +40,7 @@ export const ICONS = {
   hidden: "M3 3l14 14M8 5c6-1.5 10 5 10 5s-.8 1.5-2.4 3M5 6.6C3 8 2 10 2 10s3 5.5 8 5.5c1 0 2-.2 2.8-.6",
   up: "M5 12l5-5 5 5",
   down: "M5 8l5 5 5-5",
+  pen: "M3 17l1-4L14 3l3 3L7 16zM12 5l3 3",
   pin: "M7 3h6l-1 5 3 3H5l3-3zM10 11v6",
   bin: "M4 6h12M8 6V4h4v2M6 6l.7 10h6.6L14 6",
   plus: "M10 4v12M4 10h12",

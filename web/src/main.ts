@@ -7,6 +7,7 @@ import { Link, type LinkState } from "./link";
 import { Model } from "./model";
 import { Bar } from "./panel/bar";
 import { BrushTool } from "./panel/brush";
+import { DrawTool } from "./panel/draw";
 import { CompareBar } from "./panel/compare";
 import { bindKey, plainKey } from "./panel/keys";
 import { Lens } from "./panel/lens";
@@ -21,6 +22,8 @@ import { Settings } from "./panel/settings";
 import { Snapshots } from "./panel/snapshots";
 import { Sheets } from "./panel/sheets";
 import { Stack } from "./panel/stack";
+import { PaintTool } from "./panel/paint";
+import { PresetTool } from "./panel/presets";
 import { ProblemBar } from "./panel/problems";
 import { Notices, Status } from "./panel/status";
 import { TimelineBar } from "./panel/timeline";
@@ -35,6 +38,8 @@ class App {
   readonly timeline: TimelineBar;
   readonly lock: LockTool;
   readonly brush: BrushTool;
+  readonly paint: PaintTool;
+  readonly draw: DrawTool;
   readonly look: Look;
   readonly tray: Tray;
   private readonly notes: Notes;
@@ -57,7 +62,15 @@ class App {
     this.timeline = new TimelineBar(this.model, this.viewer, (frame) => this.status.simulated(frame.statistics));
     this.brush = new BrushTool(this.model, this.viewer);
     this.brush.changed.push((on) => on && this.lock.choose(-1));
-    this.lock.busy = () => this.brush.on;
+    this.paint = new PaintTool(this.model, this.viewer, this.brush.ring);
+    this.paint.changed.push((on) => on && (this.brush.show(false), this.lock.choose(-1)));
+    this.brush.changed.push((on) => on && this.paint.show(false));
+    this.model.paint = (place, label) => this.paint.paint(place, label);
+    this.draw = new DrawTool(this.model, this.viewer);
+    this.model.draw = (place, label) => this.draw.draw(place, label);
+    this.draw.changed.push((on) => on && (this.brush.show(false), this.paint.show(false), this.lock.choose(-1)));
+    for (const { changed } of [this.brush, this.paint]) changed.push((on) => on && this.draw.show(false));
+    this.lock.busy = () => this.brush.on || this.paint.on || this.draw.on;
     this.pointer = new PresenterPointer(this.model, this.viewer);
     picture.append(this.lock.handles, this.brush.ring, this.pointer.element);
     this.viewer.onPaint = () => {
@@ -72,7 +85,9 @@ class App {
     keys("+ and -", "zoom in, zoom out", "+", "=", "-");
     keys("F", "frame all hair", "f");
     const name = () => (this.model.welcome?.name ?? "ringlet").split(".")[0];
-    const left = h("div", { class: "left" }, new Stack(this.model).element, this.lock.element, this.brush.element);
+    const presets = new PresetTool(this.model, this.viewer);
+    const stack = new Stack(this.model, () => presets.show(true));
+    const left = h("div", { class: "left" }, stack.element, presets.element, this.lock.element, this.brush.element, this.paint.element, this.draw.element);
     const settings = new Settings(this.model).element;
     this.viewer.covered = () => [
       left.getBoundingClientRect().right,
@@ -190,6 +205,14 @@ class App {
         model.progress = message.stage ? message : null;
         model.tell("progress");
         break;
+      case "painted":
+        model.painted = message;
+        model.tell("painted");
+        break;
+      case "presets":
+        model.presets = message.presets;
+        model.tell("presets");
+        break;
       case "names":
         model.names = message;
         model.tell("names");
@@ -292,6 +315,8 @@ class App {
     this.model.reset();
     this.lock.choose(-1);
     this.brush.show(false);
+    this.paint.show(false);
+    this.draw.show(false);
     this.viewer.reset();
     for (const topic of ["document", "timeline", "guides", "compared", "chosen"] as const) this.model.tell(topic);
   }

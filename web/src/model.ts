@@ -13,6 +13,8 @@ import type {
   Names,
   Note,
   Numbers,
+  Painted,
+  Preset,
   Problem,
   Progress,
   Reference,
@@ -42,6 +44,8 @@ type Topic =
   | "chosen"
   | "problems"
   | "progress"
+  | "presets"
+  | "painted"
   | "look"
   | "followed"
   | "overlay"
@@ -80,6 +84,13 @@ export class Model {
   /** The locks whose own values are edited, in place of those of all locks; empty: all. */
   locks: number[] = [];
   problems: Problem[] = [];
+  presets: Preset[] = [];
+  /** The map that was asked for or painted last. */
+  painted: Painted | null = null;
+  /** Paints the map that a setting names. */
+  paint: (place: Place, label: string) => void = () => {};
+  /** Draws the curve that a setting names. */
+  draw: (place: Place, label: string) => void = () => {};
   /** How the leading page looks at the groom. */
   followed: Followed | null = null;
   /** Progress of a groom that takes long. */

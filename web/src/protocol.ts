@@ -133,6 +133,15 @@ export interface StageCamera {
   focal_length: number;
 }
 
+/** A preset. whole: whether it is a look, which replaces all tables; picture: data URL, empty for none */
+export interface Preset {
+  name: string;
+  title: string;
+  about: string;
+  whole: boolean;
+  picture: string;
+}
+
 /** First message of a page. */
 export interface Hello {
   kind: "hello";
@@ -291,6 +300,64 @@ export interface Sculpt {
 /** Removes the sculpts of all guides. */
 export interface Unsculpt {
   kind: "unsculpt";
+}
+
+/** Requests the map that a setting names, as painted values on the scalp. */
+export interface ShowMap {
+  kind: "show_map";
+  place: (string | number)[];
+}
+
+/** Moves a brush over the scalp, which changes the map that a setting names; a setting without one gets a new map. */
+export interface Paint {
+  kind: "paint";
+  place: (string | number)[];
+  tool: "add" | "remove" | "smooth";
+  at: [number, number, number];
+  by: [number, number, number];
+  radius: number;
+  mirrored?: boolean;
+  strength?: number;
+  falloff?: "smooth" | "sharp" | "flat";
+  gesture: number;
+  resting?: boolean;
+}
+
+/** Draws the helper curve that a setting names; a setting without one gets a new curve. */
+export interface Draw {
+  kind: "draw";
+  place: (string | number)[];
+  points: [number, number, number][];
+  gesture: number;
+}
+
+/** Requests the presets, which the page then receives. */
+export interface ListPresets {
+  kind: "list_presets";
+}
+
+/** Shows the groom with a preset, which leaves no trace in the file or in undo; without a name, as it was. */
+export interface Try {
+  kind: "try";
+  name?: string;
+  part?: number;
+}
+
+/** Takes a preset; all messages of a gesture are one undo step, each relative to the state before it. */
+export interface Take {
+  kind: "take";
+  name: string;
+  part?: number;
+  gesture: number;
+  resting?: boolean;
+}
+
+/** Keeps tables of the recipe as a preset of the project. picture: data URL of a JPEG; empty for none */
+export interface Keep {
+  kind: "keep";
+  name: string;
+  tables: string[];
+  picture?: string;
 }
 
 /** Shares the look of the leading page with those that follow. */
@@ -708,6 +775,21 @@ export interface Progress {
   done: number;
 }
 
+/** The presets of the project, then the looks that come with Ringlet. */
+export interface Presets {
+  kind: "presets";
+  presets: Preset[];
+}
+
+/** A map on the scalp: its value at each point of the mesh of the region, 255 for white. */
+export interface Painted {
+  kind: "painted";
+  map: string;
+  points: Float32Array;
+  triangles: Uint32Array;
+  values: Uint8Array;
+}
+
 /** All snapshots of the recipe, the oldest first. */
 export interface Snapshots {
   kind: "snapshots";
@@ -776,6 +858,13 @@ export type FromPage =
   | Isolate
   | Sculpt
   | Unsculpt
+  | ShowMap
+  | Paint
+  | Draw
+  | ListPresets
+  | Try
+  | Take
+  | Keep
   | Look
   | Hand
   | Play
@@ -820,6 +909,8 @@ export type FromServer =
   | Trouble
   | Problems
   | Progress
+  | Presets
+  | Painted
   | Snapshots
   | Picture
   | Notes

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +18,7 @@ from ringlet.data.mesh import Mesh
 from ringlet.groom import AnyHairs, Groom, HairMemory, Memory, Recipe, join_grooms, lay_hairs, make_groom, recipes_of
 from ringlet.groom.operators import Clean, Context, Drawn
 from ringlet.viewer import protocol
+from ringlet.viewer.maps import texture_of
 from ringlet.viewer.project import Project
 from ringlet.viewer.wire import pack
 
@@ -140,6 +141,7 @@ class GroomEvaluator:
         draft: bool,
         check_abort: Callable[[], None],
         progress: Callable[[str, float], None] = lambda stage, done: None,
+        painted: Mapping[str, bytes] | None = None,
     ) -> DisplayGroom:
         """Evaluates a recipe.
 
@@ -148,6 +150,7 @@ class GroomEvaluator:
         draft:       skips the clean stage
         check_abort: called between stages; may raise an exception to abort
         progress:    called with each stage and the fraction of the stages before it
+        painted:     pictures of maps in place of those on disk, by name of the file
         """
         recipes = recipe.grooms or {"": recipe}
         clock = StageClock(sum(len(one.shape) + 4 for one in recipes.values()) + 1, check_abort, progress)
@@ -156,7 +159,7 @@ class GroomEvaluator:
         for name, one in recipes.items():
             one = without_muted(one, always | (muted if name == chosen else frozenset()))
             memory = self._memories.setdefault(name, Memory())
-            made[name] = make_groom(one, progress=clock, memory=memory, **self._read(name, one))
+            made[name] = make_groom(one, progress=clock, memory=memory, **self._read(name, one, painted or {}))
             made[name].hairs = one.hairs.model_dump(mode="json")
             check_abort()
         groom = join_grooms(made) if recipe.grooms else made[""]
@@ -173,8 +176,14 @@ class GroomEvaluator:
             clock.total,
         )
 
-    def _read(self, name: str, recipe: Recipe) -> dict[str, Any]:
+    def _read(self, name: str, recipe: Recipe, painted: Mapping[str, bytes]) -> dict[str, Any]:
         """Inputs from the files of a groom's recipe, read again only after one of them changes."""
+        textures = {one: texture_of(painted[file]) for one, file in recipe.maps.items() if file in painted}
+        if textures:
+            others = {one: file for one, file in recipe.maps.items() if one not in textures}
+            inputs = self._read(name, recipe.model_copy(update={"maps": others}), {})
+            scalp = inputs["scalp"]
+            return {**inputs, "scalp": replace(scalp, textures={**scalp.textures, **textures})}
         files = recipe.named_files()
         for what, file in files.items():
             self._project.inside(file, f"{recipe.path.name if recipe.path else 'recipe'}: {what}")

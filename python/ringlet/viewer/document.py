@@ -6,8 +6,8 @@ import difflib
 import re
 import time
 import tomllib
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +19,7 @@ from ringlet.data.files import replacing
 from ringlet.data.regular import read_text
 from ringlet.data.toml import toml_key
 from ringlet.viewer import blocks
+from ringlet.viewer.project import Project
 from ringlet.viewer.protocol import Change, Place
 
 MAX_UNDO_STEPS = 500
@@ -28,12 +29,14 @@ MOST_COMPARED = 4_000_000  # pairs of lines that a diff compares
 
 @dataclass(frozen=True)
 class State:
-    """A state for undo: text, muted stages, the one stage that acts alone, and text of the file of edits."""
+    """A state for undo: text, muted stages, the one stage that acts alone, text of the file of edits, and the maps that
+    were painted, as pictures by name of the file."""
 
     text: str
     muted: frozenset[str] = frozenset()
     edits: str = ""
     solo: str = ""
+    maps: Mapping[str, bytes] = field(default_factory=dict)
 
 
 class History:
@@ -96,6 +99,8 @@ class Document:
         self.path, self.history = path, history or History()
         self.saved, self.saved_edits = read_text(path) if text is None else text, edits
         self.theirs: tuple[str, str] | None = None
+        self._maps_before: dict[str, bytes] = {}  # as they were on disk before they were painted
+        self.saved_maps: dict[str, bytes] = {}
         self._check, self.revision = check, 0
         self.restore(State(self.saved, edits=edits))
 
@@ -113,7 +118,30 @@ class Document:
     @property
     def dirty(self) -> bool:
         """Whether there are unsaved changes."""
-        return self.text != self.saved or self.state.edits != self.saved_edits
+        return self.text != self.saved or self.state.edits != self.saved_edits or bool(self.painted)
+
+    @property
+    def maps(self) -> dict[str, bytes]:
+        """Maps that were painted in this session, in their current state: pictures by name of the file."""
+        return {**self._maps_before, **self.state.maps}
+
+    @property
+    def painted(self) -> dict[str, bytes]:
+        """Maps that differ from those on disk."""
+        return {name: picture for name, picture in self.maps.items() if self.saved_maps.get(name) != picture}
+
+    def map_picture(self, name: str, project: Project) -> bytes:
+        """Picture of a map in its current state, from its file where it was not painted yet.
+
+        Raises UserError for a file that cannot be read.
+        """
+        if name not in self.maps:
+            path = project.inside(self.path.parent / name, f"{self.path.name}: map")
+            try:
+                self._maps_before[name] = self.saved_maps[name] = path.read_bytes()
+            except OSError as error:
+                raise UserError(f"{path}: cannot be read ({error.strerror}); name a picture that is there") from error
+        return self.maps[name]
 
     @property
     def can_undo(self) -> bool:
@@ -129,11 +157,13 @@ class Document:
         """Checks the current state again, after a file changed that it refers to; raises UserError as ``check``."""
         self.restore(self.state)
 
-    def recover(self, text: str, edits: str, saved: str, saved_edits: str) -> None:
-        """Sets unsaved texts of an earlier session as one undo step; a version on disk other than ``saved`` is then a
-        conflict. Raises UserError when they are invalid."""
+    def recover(
+        self, text: str, edits: str, saved: str, saved_edits: str, maps: Mapping[str, bytes] | None = None
+    ) -> None:
+        """Sets unsaved texts and maps of an earlier session as one undo step; a version on disk other than ``saved`` is
+        then a conflict. Raises UserError when they are invalid."""
         on_disk = self.saved, self.saved_edits
-        self.apply(text, edits=edits)
+        self.apply(text, edits=edits, maps=maps)
         self.saved, self.saved_edits = saved, saved_edits
         self.meet(*on_disk)
 
@@ -164,8 +194,13 @@ class Document:
             self.apply(text, edits=edits)
             (self.saved, self.saved_edits), self.theirs = self.theirs, None
 
-    def set(self, changes: Sequence[tuple[Place, Any]], gesture: int | None = None) -> None:
-        """Sets values of settings; None removes a setting. One gesture is one undo step.
+    def set(
+        self,
+        changes: Sequence[tuple[Place, Any]],
+        gesture: int | None = None,
+        maps: Mapping[str, bytes] | None = None,
+    ) -> None:
+        """Sets values of settings, and maps; None removes a setting. One gesture is one undo step.
 
         Raises UserError when a setting cannot be set or the result is invalid.
         """
@@ -180,7 +215,7 @@ class Document:
             except (TOMLKitError, KeyError, IndexError, TypeError, ValueError) as error:
                 where = ".".join(str(part) for part in place)
                 raise UserError(f"{self.path.name}: {where} cannot be set ({error}); undo, or edit the file") from None
-        self.apply(text, gesture=gesture)
+        self.apply(text, gesture=gesture, maps={**self.state.maps, **(maps or {})})
 
     def add_tables(self, name: str, at: int, entries: Sequence[dict[str, Any]]) -> None:
         """Adds tables with the keys of ``entries`` to the array of tables ``name``, the first in row ``at``.
@@ -238,9 +273,11 @@ class Document:
         edits: str | None = None,
         solo: str | None = None,
         gesture: int | None = None,
+        maps: Mapping[str, bytes] | None = None,
     ) -> None:
-        """Sets another text, muted stages or edits as one undo step; raises UserError when they are invalid."""
-        changes = {"muted": muted, "edits": edits, "solo": solo}
+        """Sets another text, muted stages, edits or painted maps as one undo step; raises UserError when they are
+        invalid."""
+        changes = {"muted": muted, "edits": edits, "solo": solo, "maps": maps}
         state = replace(self.state, text=text, **{name: one for name, one in changes.items() if one is not None})
         current = self.state
         if state == current:
@@ -259,7 +296,7 @@ class Document:
         with replacing(path or self.path, update=path is None) as aside:
             aside.write_text(self.text if text is None else text, encoding="utf-8")
         if path is None:
-            self.saved, self.saved_edits = self.text, self.state.edits
+            self.saved, self.saved_edits, self.saved_maps = self.text, self.state.edits, self.maps
         return path or self.path
 
     def contents(self) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar, get_args
 
@@ -150,8 +150,14 @@ class Files:
 
     # Changes
 
-    def set(self, file: File, changes: list[tuple[Place, Any]], gesture: int | None = None) -> None:
-        """Sets values of settings; None removes a setting."""
+    def set(
+        self,
+        file: File,
+        changes: list[tuple[Place, Any]],
+        gesture: int | None = None,
+        maps: Mapping[str, bytes] | None = None,
+    ) -> None:
+        """Sets values of settings, and painted maps; None removes a setting."""
         document = self.document(file)
         before = document.model
         names = self._inherited(document) if file == "recipe" else None
@@ -159,7 +165,7 @@ class Files:
             changes = [(_by_name(place, names), value) for place, value in changes]
         if file == "recipe" and self.groom:
             changes = [([GROOMS, self.groom, *place], value) for place, value in changes]
-        document.set(changes, gesture)
+        document.set(changes, gesture, maps)
         if file == "recipe" and document.model.edits_file != before.edits_file:
             document.apply(document.text, edits=_text_of(document.model.edits_file), gesture=gesture)
 
@@ -224,7 +230,7 @@ class Files:
         edits = parse_edits(document.state.edits or "ringlet = 1", document.path)
         text = edits_text({**edits, kind: tables})
         if not document.contents().get("edits"):
-            document.set([(["edits"], self._unused_name(document.path, ".edits.toml"))], gesture)
+            document.set([(["edits"], self.unused_name(document.path, ".edits.toml"))], gesture)
         document.apply(document.text, edits=text, gesture=gesture)
 
     # Other programs
@@ -249,8 +255,10 @@ class Files:
 
     def own(self, file: File) -> set[Path]:
         """The file of a document, and its file of edits."""
-        edits = self.document(file).model.edits_file if file == "recipe" else None
-        return {self.document(file).path} | ({edits} if edits is not None else set())
+        document = self.document(file)
+        edits = document.model.edits_file if file == "recipe" else None
+        maps = {document.path.with_name(name) for name in document.maps}
+        return {document.path, *maps} | ({edits} if edits is not None else set())
 
     def meet_disk(self, file: File) -> bool:
         """Takes in what another program wrote to a document and its file of edits; returns whether its state changed.
@@ -319,18 +327,26 @@ class Files:
                 texts.append(one.merged([place for place in places if next(names).name in mine]))
         document.resolve(*texts)
 
-    def recover(self, file: File, text: str, edits: str, saved: str, saved_edits: str) -> None:
-        """Restores unsaved texts of an earlier session; raises UserError when they are invalid."""
+    def recover(
+        self,
+        file: File,
+        text: str,
+        edits: str,
+        saved: str,
+        saved_edits: str,
+        maps: Mapping[str, bytes] | None = None,
+    ) -> None:
+        """Restores unsaved texts and painted maps of an earlier session; raises UserError when they are invalid."""
         document = self.document(file)
         base = (saved, saved_edits) if saved else (document.saved, document.saved_edits)
-        document.recover(text, edits or document.saved_edits, *base)
+        document.recover(text, edits or document.saved_edits, *base, maps)
 
     def step(self, kind: str) -> list[File]:
         """Undoes, redoes or reverts to the saved state; returns the kinds of the changed files."""
         if kind == "revert":
             before = {name: document.state for name, document in self.documents.items()}
             for document in self.documents.values():
-                document.apply(document.saved, edits=document.saved_edits)
+                document.apply(document.saved, edits=document.saved_edits, maps=document.saved_maps)
             return [name for name, document in self.documents.items() if document.state != before[name]]
         changed = self._history.undo() if kind == "undo" else self._history.redo()
         return [name for name, document in self.documents.items() if document is changed]
@@ -360,6 +376,8 @@ class Files:
                 raise UserError(f"{document.path.name}: was changed by another program; choose first what is kept")
             if document.state.edits != document.saved_edits:
                 _write(document.model.edits_file, document.state.edits)
+            for map_file, picture in document.painted.items():
+                self._write_map(document.path, map_file, picture)
             return document.save()
         path = self.project.beside(name, f".{file}.toml")
         if path.exists():
@@ -368,14 +386,28 @@ class Files:
         if file == "recipe":
             edits = None
             if document.state.edits != document.saved_edits:
-                edits = path.with_name(self._unused_name(path, ".edits.toml"))
+                edits = path.with_name(self.unused_name(path, ".edits.toml"))
             text = variant(document, self.parse, path, edits) if as_variant else copied(document, edits)
+            text = self._with_own_maps(document, text, path)
             self.parse(text, path, document.state.edits)
             if edits is not None:
                 _write(edits, document.state.edits)
         return document.save(path, text)
 
-    def _unused_name(self, path: Path, suffix: str) -> str:
+    def _with_own_maps(self, document: Document, text: str, path: Path) -> str:
+        """Writes maps with unsaved strokes for a copy, and returns its text with their names."""
+        for name, file in document.model.maps.items():
+            if file in document.painted:
+                own = self.unused_name(path, f".{name}.png")
+                self._write_map(path, own, document.painted[file])
+                text = set_value(text, ["maps", name], own)
+        return text
+
+    def _write_map(self, path: Path, name: str, picture: bytes) -> None:
+        with replacing(self.project.inside(path.parent / name, "map"), update=True) as aside:
+            aside.write_bytes(picture)
+
+    def unused_name(self, path: Path, suffix: str) -> str:
         """File name after a recipe's name that does not exist yet."""
         stem = path.name.removesuffix(".toml").removesuffix(".recipe")
         names = [f"{stem}{suffix}", *(f"{stem}-{k}{suffix}" for k in range(2, 100))]

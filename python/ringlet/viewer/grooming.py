@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -36,6 +36,7 @@ class Work:
     without:  stages without effect
     chosen:   the one of several grooms that ``without`` is about
     draft:    whether a draft suffices
+    painted:  pictures of maps in place of those on disk
     """
 
     document: Document
@@ -44,6 +45,7 @@ class Work:
     without: frozenset[str]
     chosen: str
     draft: bool
+    painted: Mapping[str, bytes]
 
 
 class Grooming:
@@ -89,11 +91,15 @@ class Grooming:
         self._problems.clear(WORK)
         self.request_of(recipe, draft=draft)
 
-    def request_of(self, recipe: Recipe, *, draft: bool) -> None:
-        """Requests the groom of a recipe that is the current one but for a stroke that has not ended."""
+    def request_of(self, recipe: Recipe, *, draft: bool, painted: Mapping[str, bytes] | None = None) -> None:
+        """Requests the groom of a recipe that is the current one but for a stroke that has not ended.
+
+        painted: maps with a stroke that has not ended
+        """
         files = self._files
         document = files.recipe
-        self._worker.submit(Work(document, recipe, document.revision, files.without_effect, files.groom, draft))
+        maps = document.painted if painted is None else painted
+        self._worker.submit(Work(document, recipe, document.revision, files.without_effect, files.groom, draft, maps))
 
     def cancel(self) -> None:
         """Cancels the groom that is being made."""
@@ -125,6 +131,7 @@ class Grooming:
                 draft=work.draft,
                 check_abort=check_abort,
                 progress=progress,
+                painted=work.painted,
             )
             self._call(self._succeed, display, work)
             if not work.draft:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import suppress
 from pathlib import Path
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import Base64Bytes, BaseModel, ConfigDict, ValidationError
 
 from ringlet.data.errors import UserError
 from ringlet.data.files import replacing
@@ -22,6 +22,7 @@ class Unsaved(BaseModel):
     edits: str
     saved: str
     saved_edits: str
+    maps: dict[str, Base64Bytes] = {}
 
 
 class Entry(BaseModel):

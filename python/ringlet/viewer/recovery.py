@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 from collections.abc import Mapping
 
 from ringlet.data.errors import UserError
@@ -26,7 +27,7 @@ class Recovery:
             for kind, document in files.documents.items():
                 one = entry.documents.get(kind) if entry is not None else None
                 if one is not None and document.path.name == one.name:
-                    files.recover(kind, one.text, one.edits, one.saved, one.saved_edits)
+                    files.recover(kind, one.text, one.edits, one.saved, one.saved_edits, one.maps)
         except UserError as error:
             self._problems.show(RECOVERED, str(error), [dismiss(RECOVERED)])
             return None
@@ -49,6 +50,7 @@ class Recovery:
                 edits=document.state.edits,
                 saved=document.saved,
                 saved_edits=document.saved_edits,
+                maps={name: base64.b64encode(picture) for name, picture in document.painted.items()},
             )
             for kind, document in self._files.documents.items()
             if document.dirty

@@ -16,17 +16,21 @@ from typing import Any
 from ringlet import api
 from ringlet.data.errors import UserError
 from ringlet.data.pigment import HAIR_COLORS
+from ringlet.groom import Groom
 from ringlet.viewer import eyedropper, protocol
 from ringlet.viewer.caches import Caches
 from ringlet.viewer.comparer import Comparer
 from ringlet.viewer.display_groom import DisplayGroom
+from ringlet.viewer.drawing import draw
 from ringlet.viewer.edit_lock import EditLock
 from ringlet.viewer.files import Files, operator_names
 from ringlet.viewer.grooming import Grooming
 from ringlet.viewer.lights import live_rigs
 from ringlet.viewer.manipulator import LockManipulator
+from ringlet.viewer.painting import Painter
 from ringlet.viewer.playback import Playback
 from ringlet.viewer.presence import Presence
+from ringlet.viewer.presets import Presets
 from ringlet.viewer.problems import GROOM, RECOVERED, SAVE, ProblemList, conflict_fixes, dismiss
 from ringlet.viewer.project import Project
 from ringlet.viewer.protocol import File, Fix
@@ -97,6 +101,8 @@ class Session:
         self._recovery = Recovery(files, self.problems)
         self._playback = Playback(files, self.publisher, viewport, self._call, self.trouble)
         self._manipulator, self._sculptor = LockManipulator(files), Sculptor(files)
+        self._presets, self._trying = Presets(files), False
+        self._painter = Painter(files)
         self._cameras = StageCameras(self.publisher)
         self._grooming.open(files, viewport)
         self._review.open(files)
@@ -363,6 +369,24 @@ class Session:
         elif isinstance(message, protocol.Unsculpt):
             self._sculptor.remove_all()
             self._edited("recipe")
+        elif isinstance(message, protocol.ShowMap):
+            page.queue.put("painted", self._painter.show(message.place, self._made("paint")))
+        elif isinstance(message, protocol.Paint):
+            self._paint(message)
+        elif isinstance(message, protocol.Draw):
+            draw(self.files, message, self._made("draw").origin)
+            self._edited("recipe")
+        elif isinstance(message, protocol.ListPresets):
+            page.queue.put("presets", self._presets.message())
+        elif isinstance(message, protocol.Try):
+            self._try(message)
+        elif isinstance(message, protocol.Take):
+            self._presets.take(message)
+            self._edited("recipe", resting=message.resting)
+        elif isinstance(message, protocol.Keep):
+            path = self._presets.keep(message)
+            self._notice(f"{path.name} is kept")
+            page.queue.put("presets", self._presets.message())
         elif isinstance(message, protocol.Play):
             self._playback.play(message)
         elif isinstance(message, protocol.Against):
@@ -394,6 +418,33 @@ class Session:
     def _preview(self, *, draft: bool) -> None:
         """Requests the groom with the current stroke."""
         self._grooming.request_of(self._sculptor.preview(self.files.recipe.model), draft=draft)
+
+    def _made(self, what: str) -> Groom:
+        """The displayed groom; raises UserError before it is made."""
+        if self._viewport.display is None:
+            raise UserError(f"{what}: the groom is not made yet; wait until it is seen")
+        return self._viewport.display.groom
+
+    def _paint(self, message: protocol.Paint) -> None:
+        """Shows a stroke on the scalp at once, and requests a draft; its end is one undo step."""
+        painted = self._painter.paint(message, self._made("paint"))
+        for page in self.pages:
+            page.queue.put("painted", painted)
+        if message.resting:
+            self._edited("recipe")
+        else:
+            self._grooming.request_of(self.files.recipe.model, draft=True, painted=self._painter.painted)
+            self._rest.restart(self._settle)
+
+    def _try(self, message: protocol.Try) -> None:
+        """Shows the groom with a preset, or as it was; the newest one counts."""
+        recipe = self._presets.tried(message.name, message.part) if message.name else None
+        self._grooming.cancel()
+        self._trying = recipe is not None
+        if recipe is None:
+            self._grooming.request()
+        else:
+            self._grooming.request_of(recipe, draft=True)
 
     # Files
 
@@ -498,6 +549,7 @@ class Session:
     # Grooming
 
     def _edited(self, file: File, *, resting: bool = True) -> None:
+        self._trying = False
         document = self.files.document(file)
         if document.theirs is not None and not document.dirty:
             with suppress(UserError):  # theirs is invalid, and the conflict stays
@@ -521,6 +573,8 @@ class Session:
             return
         if self._sculptor.busy:
             self._preview(draft=False)
+        elif self._painter.busy:
+            self._grooming.request_of(self.files.recipe.model, draft=False, painted=self._painter.painted)
         else:
             self._grooming.request()
 
@@ -529,6 +583,11 @@ class Session:
         if self._sculptor.busy:
             self._sculptor.finish()
             self._edited("recipe")
+        if self._painter.busy:
+            self._painter.finish()
+            self._edited("recipe")
+        if self._trying:
+            self._try(protocol.Try())
         self._settle()
 
     def _show(self, display: DisplayGroom, revision: int) -> None:

@@ -103,7 +103,7 @@ export class BrushTool {
     for (const end of ["pointerup", "pointercancel"] as const)
       element.addEventListener(end, () => this.lift(), { capture: true });
     element.addEventListener("pointerleave", () => this.ring.toggleAttribute("hidden", true));
-    bindKey({ keys: "[ and ]", does: "smaller brush, larger brush", on: plainKey("[", "]"), run: (event) => this.resize(event.key === "[" ? 1 / STEP : STEP) });
+    bindKey({ keys: "[ and ]", does: "smaller brush, larger brush", on: (event) => this.on && plainKey("[", "]")(event), run: (event) => this.resize(event.key === "[" ? 1 / STEP : STEP) });
     bindKey({ keys: "B", does: "turn the brush on or off", on: plainKey("b"), run: () => this.show(!this.on) });
     bindKey({ keys: "Escape", does: "turn the brush off", on: (event) => this.on && event.key === "Escape", run: () => this.show(false) });
     for (const topic of ["role", "guides"] as const) model.on(topic, () => this.update());

@@ -39,7 +39,7 @@ function taken(event: KeyboardEvent): boolean {
   if (document.querySelector("dialog[open]")) return true;
   if (!target?.closest) return false;
   if (event.key === " " || event.key === "Enter") return Boolean(target.closest("button, summary, input, select, a"));
-  if (event.key.startsWith("Arrow")) return Boolean(target.closest("input, select, svg, [role=slider]"));
+  if (/^(Arrow|Home|End)/.test(event.key)) return Boolean(target.closest("input, select, svg, [role=slider]"));
   return Boolean(target.closest("select"));
 }
 

@@ -15,7 +15,15 @@ export class NameField extends Field {
 
   constructor(model: Model, file: File, place: Place, setting: Setting) {
     super(model, file, place, setting);
-    this.element.append(this.head(this.list));
+    const label = place.filter((part) => part !== "map").join(" ").replaceAll("_", " ");
+    const makes = {
+      maps: () => iconButton("brush", `Paint ${label} on the scalp`, () => model.paint(place, label)),
+      curves: () => iconButton("pen", `Draw ${label} on the scalp`, () => model.draw(place, label)),
+      regions: () => null,
+      vectors: () => null,
+    }[setting.named];
+    const tool = file === "recipe" ? makes() : null;
+    this.element.append(this.head(h("span", { class: "number-box" }, this.list, tool)));
     this.list.addEventListener("change", () => this.send(this.list.value || null, true));
   }
 

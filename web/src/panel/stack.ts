@@ -14,7 +14,10 @@ const KEPT = ["guides", "locks", "hairs", "color", "fiber"]; // what has no effe
 export class Stack {
   readonly element = h("nav", { class: "panel stack", "aria-label": "Stages of the groom" });
 
-  constructor(private readonly model: Model) {
+  constructor(
+    private readonly model: Model,
+    private readonly openPresets: () => void,
+  ) {
     model.on("document", () => this.update());
     model.on("chosen", () => this.update());
     model.on("role", () => this.update());
@@ -28,6 +31,7 @@ export class Stack {
     const parts: HTMLElement[] = [];
     if (document) {
       if (document.grooms.length) parts.push(this.grooms(document.grooms, document.groom));
+      else if (this.model.role.leads) parts.push(h("button", { type: "button", class: "quiet looks-open", "data-stage": "looks", onclick: this.openPresets }, "Looks and presets…"));
       parts.push(h("h2", {}, "groom"), this.row({ name: "recipe", op: "", place: [], muted: false, solo: false }, document.stages));
       parts.push(...document.stages.map((stage) => this.row(stage, document.stages)), this.adding());
     }

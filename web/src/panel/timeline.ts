@@ -1,6 +1,7 @@
 // The frames of a shot or a cache: run, hold, go on, run again from a frame, scrub, and compare with another cache.
 // They are with the server: here are those about the one that is seen, as many as fit.
 
+import "./timeline.css";
 import { h, iconButton } from "../dom";
 import type { Model } from "../model";
 import { bindKey, plainKey } from "./keys";
@@ -12,6 +13,7 @@ import type { Viewer } from "../view/viewer";
 type Layer = "shot" | "against";
 const LAYERS: Layer[] = ["shot", "against"];
 const AHEAD = 16; // frames after the one that is seen that are asked for
+const RATES = [6, 12, 24, 25, 30, 48, 60]; // of playback [frames a second]
 const MOST = 256e6; // bytes of frames of a layer that are kept
 
 export class TimelineBar {
@@ -25,6 +27,7 @@ export class TimelineBar {
     this.model.say({ kind: "play", action: "again_from", frame: this.frame }),
   );
   private readonly watch = iconButton("play", "Play what is there (space)", () => this.toggle());
+  private readonly rate = h("select", { class: "rate", "aria-label": "Frames a second of playback" });
   private readonly against = h("select", { "aria-label": "Compare with a cache" });
   /** What was asked for and has not come. */
   private readonly asked: Record<Layer, Set<number>> = { shot: new Set(), against: new Set() };
@@ -33,6 +36,8 @@ export class TimelineBar {
   private beside = "";
   private drawn: Partial<Record<Layer, Frame>> = {};
   private playing = 0;
+  /** First and last frame of what is played; none: that of the shot. */
+  private range: { in: number | null; out: number | null } = { in: null, out: null };
   private follows = true;
 
   constructor(
@@ -45,9 +50,14 @@ export class TimelineBar {
     this.slider.addEventListener("input", () => this.goTo(Number(this.slider.value)));
     this.run.addEventListener("click", () => this.press());
     const frames = h("div", { class: "frames" }, this.slider, this.runs);
-    this.element.append(this.run, this.again, this.watch, frames, this.readout, this.against);
+    this.element.append(this.run, this.again, this.watch, this.rate, frames, this.readout, this.against);
+    this.rate.addEventListener("change", () => this.playing && (this.toggle(), this.toggle()));
     for (const topic of ["timeline", "role", "files"] as const) model.on(topic, () => this.update());
     bindKey({ keys: "Space", does: "play the frames that exist, or stop", on: plainKey(" "), run: () => model.timeline && this.toggle() });
+    const mark = (event: KeyboardEvent) => model.timeline && this.mark(event.key.toLowerCase() === "i" ? "in" : "out");
+    bindKey({ keys: "I and O", does: "in point, out point of playback at this frame; once more removes it", on: plainKey("i", "o"), run: mark });
+    const jump = (event: KeyboardEvent) => this.jump(event.key === "Home" ? "first" : "last");
+    bindKey({ keys: "Home and End", does: "first frame, last frame of playback", on: plainKey("Home", "End"), run: jump });
     bindKey({ keys: ", and .", does: "previous frame, next frame", on: plainKey(",", "."), run: (event) => this.by(event.key === "," ? -1 : 1) });
   }
 
@@ -56,6 +66,27 @@ export class TimelineBar {
     const { timeline } = this.model;
     if (!timeline) return;
     this.goTo(Math.min(timeline.last, Math.max(timeline.first, this.frame + frames)));
+  }
+
+  /** First and last frame of what is played. */
+  private get span(): { first: number; last: number } {
+    const { first, last } = this.model.timeline!;
+    return { first: this.range.in ?? first, last: this.range.out ?? last };
+  }
+
+  private jump(to: "first" | "last"): void {
+    if (!this.model.timeline) return;
+    this.follows = false;
+    this.show(this.span[to]);
+  }
+
+  /** Sets an end of what is played to this frame, or removes it; an end on the other side of it goes. */
+  private mark(end: "in" | "out"): void {
+    const { range, frame } = this;
+    range[end] = range[end] === frame ? null : frame;
+    if (range.in !== null && range.out !== null && range.in >= range.out) range[end === "in" ? "out" : "in"] = null;
+    this.update();
+    this.tell();
   }
 
   /** A frame has come. */
@@ -153,7 +184,8 @@ export class TimelineBar {
       this.drop("against");
     }
     const ready = timeline.frames.at(-1);
-    this.runs.replaceChildren(...runMarks(timeline));
+    this.runs.replaceChildren(...runMarks(timeline), ...this.rangeMarks(timeline));
+    this.offerRates(timeline.fps);
     this.slider.min = String(timeline.first);
     this.slider.max = String(timeline.last);
     const there =
@@ -180,6 +212,22 @@ export class TimelineBar {
     else this.draw();
   }
 
+  private offerRates(fps: number): void {
+    const chosen = this.rate.value;
+    const others = RATES.filter((rate) => rate !== fps);
+    this.rate.replaceChildren(h("option", { value: "" }, `${fps} fps`), ...others.map((rate) => h("option", { value: String(rate) }, `${rate} fps`)));
+    this.rate.value = others.includes(Number(chosen)) ? chosen : "";
+  }
+
+  /** What is left out of playback, shaded. */
+  private rangeMarks({ first, last }: Timeline): HTMLElement[] {
+    const length = Math.max(1, last - first);
+    const parts: [number, number][] = [[first, this.span.first], [this.span.last, last]];
+    return parts
+      .filter(([from, to]) => to > from)
+      .map(([from, to]) => h("i", { class: "left-out", style: `left: ${(100 * (from - first)) / length}%; width: ${(100 * (to - from)) / length}%` }));
+  }
+
   /** What is here of a layer is no longer true. */
   private drop(layer: Layer): void {
     this.frames[layer].clear();
@@ -204,7 +252,7 @@ export class TimelineBar {
       this.playing = 0;
     } else {
       this.follows = false;
-      const fps = this.model.timeline?.fps ?? 24;
+      const fps = Number(this.rate.value) || (this.model.timeline?.fps ?? 24);
       this.playing = window.setInterval(() => this.next(), 1000 / fps);
     }
     this.watch.setAttribute("aria-pressed", String(this.playing !== 0));
@@ -212,8 +260,10 @@ export class TimelineBar {
 
   /** The next frame, once this one is here. */
   private next(): void {
-    const { frames } = this.model.timeline ?? {};
-    if (frames?.length && this.settled) this.show(frames.find((frame) => frame > this.frame) ?? frames[0]);
+    if (!this.model.timeline || !this.settled) return;
+    const { first, last } = this.span;
+    const played = this.model.timeline.frames.filter((frame) => frame >= first && frame <= last);
+    if (played.length) this.show(played.find((frame) => frame > this.frame) ?? played[0]);
   }
 
   /** Shows a frame from now on, whichever come. */
@@ -274,6 +324,8 @@ export class TimelineBar {
       const at = closest(timeline.frames, this.frame);
       if (timeline.stale[at]) parts.push(`of run ${timeline.runs[at]}, with other settings`);
     }
+    const { in: from, out: to } = this.range;
+    if (from !== null || to !== null) parts.push(`plays ${this.span.first} to ${this.span.last}`);
     if (typeof stretch === "number") parts.push(`stretched ${(100 * stretch).toFixed(1)} % at most`);
     this.readout.textContent = parts.join(" · ");
   }

@@ -91,7 +91,7 @@ export class Body {
   readonly caster: Mesh;
   private readonly material: RawShaderMaterial;
   /** Bodies may be elsewhere in each of the looks that are compared. */
-  private readonly geometry = new Map<Side, BufferGeometry>();
+  private readonly geometries = new Map<Side, BufferGeometry>();
   private readonly index: BufferAttribute;
   private readonly tints: BufferAttribute;
   private readonly rest: Float32Array;
@@ -123,8 +123,8 @@ export class Body {
         ...Object.fromEntries(Object.entries(look).map(([name, value]) => [name, { value }])),
       },
     });
-    this.mesh = new Mesh(this.at("a"), this.material);
-    this.caster = new Mesh(this.at("a"), new MeshBasicMaterial({ side: 2, colorWrite: false }));
+    this.mesh = new Mesh(this.geometry("a"), this.material);
+    this.caster = new Mesh(this.geometry("a"), new MeshBasicMaterial({ side: 2, colorWrite: false }));
     this.mesh.frustumCulled = this.caster.frustumCulled = false;
     scenes[0].add(this.mesh);
     scenes[1].add(this.caster);
@@ -135,7 +135,7 @@ export class Body {
 
   /** Its triangles as they are on one side: positions and normals [m], three numbers a point; colors; indices. */
   surface(side: Side): Surface {
-    const geometry = this.at(side);
+    const geometry = this.geometry(side);
     const values = (name: string) => geometry.getAttribute(name).array as Float32Array;
     const triangles = geometry.index!.array as Uint32Array;
     return { points: values("position"), normals: values("normal"), colors: values("tint"), triangles };
@@ -147,7 +147,7 @@ export class Body {
 
   /** Moves it on one side; nothing: to where it rests. */
   place(side: Side, points: Float32Array = this.rest): void {
-    const geometry = this.at(side);
+    const geometry = this.geometry(side);
     if (geometry.getAttribute("position")?.array === points) return;
     geometry.setAttribute("position", new BufferAttribute(points, 3));
     geometry.computeVertexNormals();
@@ -155,16 +155,16 @@ export class Body {
 
   /** Lets it be seen as it is on one side. */
   turnTo(side: Side): void {
-    this.mesh.geometry = this.caster.geometry = this.at(side);
+    this.mesh.geometry = this.caster.geometry = this.geometry(side);
     for (const [name, { value }] of Object.entries(this.volumes[side].uniforms)) this.material.uniforms[name].value = value;
   }
 
   /** Its geometry on one side, at first where it rests. */
-  private at(side: Side): BufferGeometry {
-    let geometry = this.geometry.get(side);
+  geometry(side: Side): BufferGeometry {
+    let geometry = this.geometries.get(side);
     if (!geometry) {
       geometry = new BufferGeometry().setIndex(this.index).setAttribute("tint", this.tints);
-      this.geometry.set(side, geometry);
+      this.geometries.set(side, geometry);
       this.place(side);
     }
     return geometry;
@@ -177,7 +177,7 @@ export class Body {
   dispose(): void {
     this.scenes[0].remove(this.mesh);
     this.scenes[1].remove(this.caster);
-    for (const geometry of this.geometry.values()) geometry.dispose();
+    for (const geometry of this.geometries.values()) geometry.dispose();
     this.material.dispose();
   }
 }

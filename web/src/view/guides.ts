@@ -11,8 +11,8 @@ const PLANE = 0.16; // half the size of the outline of the plane of symmetry [m]
 export class GuideLines {
   readonly scene = new Scene();
   guides: Guides | null = null;
-  shown = false;
   private readonly geometry = new BufferGeometry();
+  private readonly lines: LineSegments;
 
   private readonly plane = new LineLoop(
     new BufferGeometry().setFromPoints(
@@ -30,9 +30,23 @@ export class GuideLines {
     this.plane.visible = false;
     this.scene.add(this.plane);
     const material = new LineBasicMaterial({ vertexColors: true, transparent: true, opacity: 0.85 });
-    const lines = new LineSegments(this.geometry, material);
-    lines.frustumCulled = false;
-    this.scene.add(lines);
+    this.lines = new LineSegments(this.geometry, material);
+    this.lines.frustumCulled = this.lines.visible = false;
+    this.scene.add(this.lines);
+  }
+
+  /** Whether the guides are shown. */
+  get shown(): boolean {
+    return this.lines.visible;
+  }
+
+  set shown(on: boolean) {
+    this.lines.visible = on;
+  }
+
+  /** Whether there is something to draw. */
+  get active(): boolean {
+    return this.lines.visible || this.plane.visible;
   }
 
   /** Shows the plane in which a brush is mirrored, or hides it. */

@@ -1,6 +1,6 @@
 // The picture: bodies and hair before a wall. Drawn only when something has changed, so an idle page rests.
 
-import { PerspectiveCamera, Scene, Vector2, Vector3, WebGLRenderer } from "three";
+import { type BufferGeometry, PerspectiveCamera, Scene, Vector2, Vector3, WebGLRenderer } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import type { Body as BodyMessage, Colors, Hairs, Locks, Rig, Shared } from "../protocol";
 import { Body } from "./body";
@@ -12,6 +12,7 @@ import { fieldOfView, FOCAL_LENGTH, type Portrait, portrait, SENSOR } from "./fr
 import { Lights } from "./lights";
 import { type Cell, type Covered, Looks, type Side } from "./looks";
 import { Clock, Pace, type Portion } from "./pace";
+import { PaintedMap } from "./painted";
 
 const REST_AFTER = 180; // time without a movement after which the picture rests [ms]
 const THINNEST = 0.9; // least width at which a hair is drawn [pixels]
@@ -32,6 +33,7 @@ export class Viewer {
   readonly lights = new Lights();
   readonly hair: Record<Side, Hair>;
   readonly guides = new GuideLines();
+  readonly painted = new PaintedMap();
   readonly looks = new Looks();
   turntable = false;
   onPaint: () => void = () => {};
@@ -161,6 +163,11 @@ export class Viewer {
     if (on) this.looks.add(side);
     else this.looks.remove(side);
     this.invalidate();
+  }
+
+  /** The bodies as they are seen, to be met by a ray. */
+  get surfaces(): BufferGeometry[] {
+    return [...this.bodies.values()].map((body) => body.geometry("a"));
   }
 
   /** Whether several looks are in the picture. */
@@ -420,7 +427,7 @@ export class Viewer {
       one.show(renderer, looks.difference ? this.difference.target(k, renderer) : null);
     });
     if (looks.difference) this.difference.draw(renderer);
-    else this.drawGuides(cells);
+    else this.drawOverlays(cells);
     if (looks.split) this.aim(alone(this.size), 1); // what is over the picture goes by this camera
   }
 
@@ -450,17 +457,18 @@ export class Viewer {
     renderer.setViewport(0, 0, size.x, size.y);
   }
 
-  private drawGuides(cells: Cell[]): void {
+  private drawOverlays(cells: Cell[]): void {
     const { renderer, camera, looks } = this;
     const cell = cells.find(({ side }) => side === "a");
-    if (!this.guides.shown || !cell) return;
+    if (!cell || !(this.guides.shown || this.painted.shown)) return;
     const size = renderer.getSize(new Vector2());
     this.aim(cell, looks.zoom(cell));
     this.window(cell, size);
     for (const body of this.bodies.values()) body.turnTo("a");
     renderer.clearDepth();
     renderer.render(this.casters, camera);
-    renderer.render(this.guides.scene, camera);
+    if (this.painted.shown) renderer.render(this.painted.scene, camera);
+    if (this.guides.shown) renderer.render(this.guides.scene, camera);
     renderer.setViewport(0, 0, size.x, size.y);
   }
 

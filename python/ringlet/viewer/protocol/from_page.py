@@ -8,6 +8,8 @@ from pydantic import Field, TypeAdapter
 
 from ringlet.data import limits
 from ringlet.viewer.protocol.message import File, FrameNumber, Gesture, Id, Message, Place, Position, Row, Shared
+from ringlet.viewer.protocol.painting import Draw, Paint, ShowMap
+from ringlet.viewer.protocol.presets import Keep, ListPresets, Take, Try
 from ringlet.viewer.protocol.render import Render, StopRender
 from ringlet.viewer.protocol.review import ReviewMessage
 
@@ -294,6 +296,13 @@ FromPage = Annotated[
     | Isolate
     | Sculpt
     | Unsculpt
+    | ShowMap
+    | Paint
+    | Draw
+    | ListPresets
+    | Try
+    | Take
+    | Keep
     | Look
     | Hand
     | Play
