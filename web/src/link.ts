@@ -12,7 +12,7 @@ const REFUSED = 4403;
 const WRONG = 4400;
 
 // What changes something: it is said again to a server that has not heard it.
-const CHANGES = ["set", "arrange", "mute", "save", "resolve", "restore", "isolate", "drag", "sculpt", "unsculpt", "take_snapshot", "edit_snapshot", "delete_snapshot", "load_snapshot"];
+const CHANGES = ["set", "arrange", "mute", "save", "use_copy", "resolve", "restore", "isolate", "drag", "sculpt", "unsculpt", "take_snapshot", "edit_snapshot", "delete_snapshot", "load_snapshot"];
 const STORE = "ringlet-owed"; // what this tab has not been answered when it is left
 
 export type LinkState = "open" | "lost" | "refused";

@@ -196,6 +196,11 @@ export interface Open {
   discard?: boolean;
 }
 
+/** Lets the shot name the copy of its recipe that was saved last, saves the shot, and goes on with both. */
+export interface UseCopy {
+  kind: "use_copy";
+}
+
 /** Resolves a conflict with the version of a file on disk. */
 export interface Resolve {
   kind: "resolve";
@@ -289,6 +294,15 @@ export interface Look {
   place: (string | number)[];
   locks: number[];
   frame?: number | null;
+}
+
+/** Requests a share page: one file with the look to turn. */
+export interface Share {
+  kind: "share";
+  camera: number[];
+  light: string;
+  color: string;
+  theme?: "dark" | "light";
 }
 
 /** Answers another page that asks for the edit lock. */
@@ -624,6 +638,15 @@ export interface Saved {
   name: string;
 }
 
+/** A share page, as UTF-8, to be kept as a file. hairs: number of its hairs, of the ``of`` of the look. */
+export interface SharePage {
+  kind: "share_page";
+  name: string;
+  hairs: number;
+  of: number;
+  text: Uint8Array;
+}
+
 /** A short message of what has happened. */
 export interface Notice {
   kind: "notice";
@@ -719,6 +742,7 @@ export type FromPage =
   | Step
   | Save
   | Open
+  | UseCopy
   | Resolve
   | Dismiss
   | Proceed
@@ -730,6 +754,7 @@ export type FromPage =
   | Sculpt
   | Unsculpt
   | Look
+  | Share
   | Hand
   | Play
   | Against
@@ -765,6 +790,7 @@ export type FromServer =
   | Compared
   | Heard
   | Saved
+  | SharePage
   | Notice
   | Followed
   | Pointer
