@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from ringlet.sim.obstacle import Body
     from ringlet.sim.scene import Scene
     from ringlet.sim.strands import Strands
-    from ringlet.viewer import view
+    from ringlet.viewer import share, view
 
 # These load slowly, so they are imported when they are first asked for.
 _SLOW = {
@@ -56,6 +56,7 @@ _SLOW = {
     "explain": "ringlet.data.explain",
     "serve": "ringlet.host",
     "solver_counts": "ringlet.api.clock",
+    "share": "ringlet.viewer",
     "view": "ringlet.viewer",
     "wedge": "ringlet.farm",
     "write_wedge_template": "ringlet.farm",

@@ -136,8 +136,14 @@ class Review:
 
     def picture(self) -> np.ndarray:
         """Pixels of the canvas, shape (height, width, 3)."""
-        data = self.page.evaluate(
-            "() => { ringlet.viewer.drawNow(); return ringlet.viewer.renderer.domElement.toDataURL('image/png') }"
+        self.get("ringlet.viewer.drawNow()")
+        return self.picture_of(self.page, "ringlet.viewer")
+
+    @staticmethod
+    def picture_of(page: Any, viewer: str) -> np.ndarray:
+        """Pixels of the canvas of a viewer, shape (height, width, 3)."""
+        data = page.evaluate(
+            f"() => {{ {viewer}.drawNow(); return {viewer}.renderer.domElement.toDataURL('image/png') }}"
         )
         return np.asarray(Image.open(io.BytesIO(base64.b64decode(data.split(",")[1]))).convert("RGB"), np.float64)
 

@@ -9,12 +9,12 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from fastapi.testclient import TestClient
 from ringlet.viewer.project import Project
 from ringlet.viewer.protocol import VERSION
 from ringlet.viewer.server import AccessControl, make_app
 from ringlet.viewer.session import Session
+from ringlet.viewer.wire import split
 from starlette.testclient import WebSocketTestSession
 
 HOST = {"host": "localhost"}
@@ -62,13 +62,8 @@ class Page:
 
 
 def read(data: bytes) -> dict[str, Any]:
-    length = struct.unpack_from("<I", data)[0]
-    message = json.loads(data[4 : 4 + length])
-    at = 4 + length
-    for name, kind, size in message.pop("arrays"):
-        message[name] = np.frombuffer(data, np.dtype(kind), size, at)
-        at += -(-size * np.dtype(kind).itemsize // 8) * 8
-    return message
+    header, arrays = split(data)
+    return {**header, **arrays}
 
 
 @contextmanager

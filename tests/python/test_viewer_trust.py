@@ -35,6 +35,13 @@ def problem(one: Page, subject: str) -> dict[str, Any]:
         one.receive("problems")
 
 
+def problem_with(one: Page, subject: str, words: str) -> dict[str, Any]:
+    """Waits for a problem whose message has these words."""
+    while words not in (found := problem(one, subject))["message"]:
+        one.receive("problems")
+    return found
+
+
 def without_problem(one: Page, subject: str) -> None:
     """Waits until a problem is gone."""
     while any(each["subject"] == subject for each in one.receive("problems")["problems"]):
@@ -277,6 +284,28 @@ def test_saving_as_goes_on_with_the_new_file(folder: Path):
         one.receive("document", dirty=False)
     assert (folder / "small.recipe.toml").read_text() == before
     assert "width = 1.6" in (folder / "wide.recipe.toml").read_text()
+
+
+def test_a_shot_uses_the_copy_of_its_recipe_when_it_is_asked_to(folder: Path):
+    before = (folder / "small.recipe.toml").read_text()
+    with serving(folder, "small.shot.toml") as client, page(client) as one:
+        one.receive("numbers", draft=False)
+        edit(one, 1.5)
+        one.send(kind="save", name="wide")
+        found = problem(one, "save")
+        assert "the shot still names small.recipe.toml" in found["message"]
+        edit(one, 1.6, gesture=2)
+        press(one, found, "Use wide.recipe.toml in the shot")  # the copy lacks this change
+        with pytest.raises(AssertionError, match="was changed since its copy was saved"):
+            one.receive("welcome")
+        one.send(kind="undo")
+        one.send(kind="save", name="wider")
+        press(one, problem_with(one, "save", "wider"), "Use wider.recipe.toml in the shot")
+        assert one.receive("welcome", mode="shot")
+        document = one.receive("document", name="wider.recipe.toml")
+        assert document["said"]["curl"]["width"] == 1.5 and not document["dirty"]
+    assert (folder / "small.recipe.toml").read_text() == before
+    assert 'groom = "wider.recipe.toml"' in (folder / "small.shot.toml").read_text()
 
 
 def test_another_file_is_opened_and_unsaved_changes_keep_it_out(folder: Path):

@@ -13,7 +13,7 @@ const WRONG = 4400;
 
 // What changes something: it is said again to a server that has not heard it.
 const CHANGES = [
-  ...["set", "arrange", "mute", "save", "resolve", "restore", "isolate", "drag", "sculpt", "unsculpt", "pick_color"],
+  ...["set", "arrange", "mute", "save", "use_copy", "resolve", "restore", "isolate", "drag", "sculpt", "unsculpt", "pick_color"],
   ...["take_snapshot", "edit_snapshot", "delete_snapshot", "load_snapshot", "write_note", "edit_note", "delete_note"],
   ...["place_reference", "delete_reference", "keep_view", "take", "keep", "paint", "draw"],
 ];

@@ -30,6 +30,7 @@ import { TimelineBar } from "./panel/timeline";
 import { Tray } from "./panel/tray";
 import { Viewbar } from "./panel/viewbar";
 import type { FromServer } from "./protocol";
+import { keep } from "./view/capture";
 import { Viewer } from "./view/viewer";
 
 class App {
@@ -293,6 +294,13 @@ class App {
       case "pointer":
         this.pointer.show(message.at && new Vector3(...message.at));
         break;
+      case "share_page": {
+        const size = `${(message.text.length / 1e6).toFixed(1)} MB`;
+        const fewer = message.hairs < message.of ? `, with ${message.hairs} of its ${message.of} hairs` : "";
+        keep(new Blob([message.text as BlobPart], { type: "text/html" }), message.name);
+        this.notices.show(`${message.name} is saved: ${size}${fewer}`);
+        break;
+      }
       case "notice":
         this.notices.show(message.message);
         break;

@@ -222,6 +222,11 @@ export interface Open {
   discard?: boolean;
 }
 
+/** Lets the shot name the copy of its recipe that was saved last, saves the shot, and goes on with both. */
+export interface UseCopy {
+  kind: "use_copy";
+}
+
 /** Resolves a conflict with the version of a file on disk. */
 export interface Resolve {
   kind: "resolve";
@@ -373,6 +378,15 @@ export interface Look {
   place: (string | number)[];
   locks: number[];
   frame?: number | null;
+}
+
+/** Requests a share page: one file with the look to turn. */
+export interface Share {
+  kind: "share";
+  camera: number[];
+  light: string;
+  color: string;
+  theme?: "dark" | "light";
 }
 
 /** Answers another page that asks for the edit lock. */
@@ -729,6 +743,15 @@ export interface Saved {
   name: string;
 }
 
+/** A share page, as UTF-8, to be kept as a file. hairs: number of its hairs, of the ``of`` of the look. */
+export interface SharePage {
+  kind: "share_page";
+  name: string;
+  hairs: number;
+  of: number;
+  text: Uint8Array;
+}
+
 /** A short message of what has happened. */
 export interface Notice {
   kind: "notice";
@@ -848,6 +871,7 @@ export type FromPage =
   | Step
   | Save
   | Open
+  | UseCopy
   | Resolve
   | Dismiss
   | Proceed
@@ -866,6 +890,7 @@ export type FromPage =
   | Take
   | Keep
   | Look
+  | Share
   | Hand
   | Play
   | Against
@@ -903,6 +928,7 @@ export type FromServer =
   | Compared
   | Heard
   | Saved
+  | SharePage
   | Notice
   | Followed
   | Pointer

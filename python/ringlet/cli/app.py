@@ -36,6 +36,7 @@ COMMANDS = [
     "movie",
     "turntable",
     "view",
+    "share",
     "serve",
     "validate",
     "schema",

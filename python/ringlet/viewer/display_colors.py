@@ -16,6 +16,7 @@ from ringlet.data.pigment import (
     DYE_AMOUNT,
     FIBER,
     GRAY,
+    HAIR_COLORS,
     MELANIN,
     REDNESS,
     ROUGHNESS,
@@ -31,6 +32,13 @@ from ringlet.viewer.display_groom import shuffled_order, spread_order
 from ringlet.viewer.wire import pack
 
 STATIONS = 24  # of a hair whose colour varies along it
+
+
+def named() -> dict[str, tuple[float, ...]]:
+    """Reflectance, three channels, and both roughnesses of the named hair colors."""
+    return {
+        name: (*color.reflectance, color.roughness, color.azimuthal_roughness) for name, color in HAIR_COLORS.items()
+    }
 
 
 def inputs(groom: Groom) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import os
 import secrets
 from collections import Counter
 from collections.abc import Callable
@@ -15,9 +16,8 @@ from typing import Any
 
 from ringlet import api
 from ringlet.data.errors import UserError
-from ringlet.data.pigment import HAIR_COLORS
 from ringlet.groom import Groom
-from ringlet.viewer import eyedropper, protocol
+from ringlet.viewer import display_colors, eyedropper, protocol
 from ringlet.viewer.caches import Caches
 from ringlet.viewer.comparer import Comparer
 from ringlet.viewer.display_groom import DisplayGroom
@@ -40,6 +40,7 @@ from ringlet.viewer.rendering import Rendering
 from ringlet.viewer.reviewing import Reviewing
 from ringlet.viewer.scene import read_scene
 from ringlet.viewer.sculpting import Sculptor
+from ringlet.viewer.sharing import Sharer
 from ringlet.viewer.stage_cameras import StageCameras
 from ringlet.viewer.viewport import Viewport
 from ringlet.viewer.watcher import FileWatcher
@@ -91,11 +92,13 @@ class Session:
         self._review = Reviewing(project, self.publisher, self._notice)
         self._comparer = Comparer(project, self.publisher, self._call)
         self._rendering = Rendering()
+        self._sharer = Sharer(project)
         self._load(file)
 
     def _load(self, file: Path) -> None:
         """Opens a file; raises UserError for one that cannot be read, before anything changes."""
         files, viewport = Files(file, self.project), Viewport(self.publisher)
+        self._copy: tuple[Path, int] | None = None  # of the recipe of a shot that was saved last, and its revision
         scene = None if "recipe" in files.documents else read_scene(file)
         self.files, self._viewport = files, viewport
         self._recovery = Recovery(files, self.problems)
@@ -171,6 +174,7 @@ class Session:
         self._playback.stop()
         self._grooming.stop(PATIENCE)
         self._comparer.stop(PATIENCE)
+        self._sharer.stop(PATIENCE)
 
     def _finish(self) -> None:
         self._end_gesture()
@@ -228,10 +232,7 @@ class Session:
                     "schemas": schemas,
                     "operators": operator_names(schemas["recipe"]),
                     "recovered": self.recovered,
-                    "colors": {
-                        name: (*color.reflectance, color.roughness, color.azimuthal_roughness)
-                        for name, color in HAIR_COLORS.items()
-                    },
+                    "colors": display_colors.named(),
                     "rigs": live_rigs(),
                 }
             )
@@ -308,6 +309,9 @@ class Session:
         if isinstance(message, protocol.Watch):
             page.queue.request(self._playback.frame_sources(message))
             return
+        if isinstance(message, protocol.Share):
+            self._sharer.share(self.publisher.retained(), self.files.file, message, page.queue)
+            return
         if isinstance(message, protocol.AnyReview):
             self._review.handle(message)
             return
@@ -337,6 +341,8 @@ class Session:
             self._save(message)
         elif isinstance(message, protocol.Open):
             self._open(self.project.inside(message.name, "open"), discard=message.discard)
+        elif isinstance(message, protocol.UseCopy):
+            self._use_copy()
         elif isinstance(message, protocol.Resolve):
             files.resolve(message.file, message.choice, message.mine, message.theirs)
             self._edited(message.file)
@@ -472,11 +478,26 @@ class Session:
         """Goes on with a copy that was saved: it holds the changes, and the file that it is a copy of has none."""
         files = self.files
         if files.mode == "shot" and file == "recipe":
-            message = f"{path.name} is saved; the shot goes on with {files.recipe.path.name}, which its groom names"
-            self.problems.show(SAVE, message, [dismiss(SAVE)])
+            self._copy = path, files.recipe.revision
+            message = f"{path.name} is saved; the shot still names {files.recipe.path.name}"
+            use = Fix(label=f"Use {path.name} in the shot", message={"kind": "use_copy"})
+            self.problems.show(SAVE, message, [use, dismiss(SAVE)])
             return
         other = [kind for kind, document in files.documents.items() if kind != file and document.dirty]
         self._open(path, discard=not other)
+
+    def _use_copy(self) -> None:
+        """Lets the shot name the copy of its recipe, saves the shot, and opens both.
+
+        Raises UserError when there is no copy, or the recipe has changed since.
+        """
+        files = self.files
+        path, revision = self._copy or (files.file, -1)
+        if revision != files.recipe.revision:
+            raise UserError(f"{files.recipe.path.name}: was changed since its copy was saved; save a copy again")
+        files.set("shot", [(["groom"], os.path.relpath(path, files.file.parent))], 0)
+        files.save("shot")
+        self._open(files.file, discard=True)
 
     def _open(self, file: Path, *, discard: bool) -> None:
         """Opens another file; raises UserError when it cannot be read, and when unsaved changes would be lost."""

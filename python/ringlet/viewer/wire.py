@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import math
 import struct
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -27,18 +28,34 @@ def pack(message: Message, **arrays: NDArray) -> bytes:
     """Encodes a message with the arrays of its class; raises ValueError for other arrays."""
     if set(arrays) != set(message.arrays):
         raise ValueError(f"{message.__class__.__name__}: arrays {sorted(arrays)}; must be {sorted(message.arrays)}")
-    header = message.model_dump(mode="json")
+    typed = {name: np.asarray(arrays[name], np.dtype(kind).newbyteorder("<")) for name, kind in message.arrays.items()}
+    return join(message.model_dump(mode="json"), typed)
+
+
+def join(header: dict[str, Any], arrays: Mapping[str, NDArray]) -> bytes:
+    """Encodes a message from its header and its little-endian arrays."""
     entries: list[tuple[str, str, int]] = []
     blocks: list[bytes] = []
-    for name, kind in message.arrays.items():
-        block = np.ascontiguousarray(arrays[name], np.dtype(kind).newbyteorder("<"))
-        entries.append((name, kind, block.size))
+    for name, values in arrays.items():
+        block = np.ascontiguousarray(values)
+        entries.append((name, f"{block.dtype.kind}{block.dtype.itemsize}", block.size))
         blocks += [block.tobytes(), b"\0" * (-block.nbytes % 8)]
     text = json.dumps(
         {**_finite(header), "arrays": entries}, separators=(",", ":"), ensure_ascii=False, allow_nan=False
     ).encode()
     text += b" " * ((-len(text) - 4) % 8)
     return b"".join([struct.pack("<I", len(text)), text, *blocks])
+
+
+def split(data: bytes) -> tuple[dict[str, Any], dict[str, NDArray]]:
+    """Header and arrays of an encoded message."""
+    length = struct.unpack_from("<I", data)[0]
+    header = json.loads(data[4 : 4 + length])
+    at, arrays = 4 + length, dict[str, NDArray]()
+    for name, kind, size in header.pop("arrays"):
+        arrays[name] = np.frombuffer(data, np.dtype(kind).newbyteorder("<"), size, at)
+        at += -(-arrays[name].nbytes // 8) * 8
+    return header, arrays
 
 
 def unpack(data: bytes) -> FromPage:

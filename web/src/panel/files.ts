@@ -11,7 +11,7 @@ export function showChanges(model: Model): void {
       return h(kind, { class: "change" }, `${sign} ${line}`);
     });
     const none = h("p", {}, "Nothing has changed since it was saved.");
-    return h("section", {}, h("h3", {}, document.name), lines.length ? h("pre", { class: "changes" }, ...lines) : none);
+    return h("section", {}, h("h3", {}, document.name), lines.length ? h("pre", { class: "changes", tabindex: 0 }, ...lines) : none);
   });
   const revert = h("button", { type: "button", class: "quiet" }, "Back to what was saved");
   const dialog = openDialog("Changes", ...lists, h("p", {}, revert));

@@ -70,7 +70,7 @@ export const plainKey =
 export function showKeys(): void {
   const row = (keys: string, does: string) => h("tr", {}, h("th", { scope: "row" }, keys), h("td", {}, does));
   const rows = [...bound.map(({ keys, does }) => row(keys, does)), ...OWN.map(([keys, does]) => row(keys, does))];
-  openDialog("Keys", h("div", { class: "scrolls" }, h("table", { class: "keys" }, h("tbody", {}, ...rows))));
+  openDialog("Keys", h("div", { class: "scrolls", tabindex: 0, role: "region", "aria-label": "List of keys" }, h("table", { class: "keys" }, h("tbody", {}, ...rows))));
 }
 
 bindKey({ keys: "?", does: "this list", on: plainKey("?"), run: showKeys });

@@ -21,7 +21,7 @@ export function openMerge(model: Model, { file, differences }: Problem): void {
     h("tbody", {}, ...rows.map((row) => row.element)),
   );
   const about = "Mine is what is seen here, theirs what is on disk. What only one side changed is chosen already.";
-  const dialog = openDialog(`Versions of ${name}`, h("p", {}, about), h("div", { class: "scrolls" }, table), merge);
+  const dialog = openDialog(`Versions of ${name}`, h("p", {}, about), h("div", { class: "scrolls", tabindex: 0, role: "region", "aria-label": "Settings that differ" }, table), merge);
   dialog.addEventListener("change", update);
   merge.addEventListener("click", () => {
     const of = (side: string) => rows.filter((row) => row.choice === side).map((row) => row.difference.name);

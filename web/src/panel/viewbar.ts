@@ -129,6 +129,15 @@ export class Viewbar {
       iconButton("camera", "Save picture", () => savePicture(viewer, name())),
       film,
       recorded,
+      iconButton("share", "Save a page to share: one file with the look to turn", () =>
+        model.say({
+          kind: "share",
+          camera: [...viewer.camera.position.toArray(), ...viewer.controls.target.toArray()],
+          light: light.value,
+          color: color.value,
+          theme: document.documentElement.dataset["theme"] === "light" ? "light" : "dark",
+        }),
+      ),
       legend,
     );
   }

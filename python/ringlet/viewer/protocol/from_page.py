@@ -7,7 +7,18 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, TypeAdapter
 
 from ringlet.data import limits
-from ringlet.viewer.protocol.message import File, FrameNumber, Gesture, Id, Message, Place, Position, Row, Shared
+from ringlet.viewer.protocol.message import (
+    Coordinate,
+    File,
+    FrameNumber,
+    Gesture,
+    Id,
+    Message,
+    Place,
+    Position,
+    Row,
+    Shared,
+)
 from ringlet.viewer.protocol.painting import Draw, Paint, ShowMap
 from ringlet.viewer.protocol.presets import Keep, ListPresets, Take, Try
 from ringlet.viewer.protocol.render import Render, StopRender
@@ -130,6 +141,12 @@ class Open(Message):
     discard: bool = False
 
 
+class UseCopy(Message):
+    """Lets the shot name the copy of its recipe that was saved last, saves the shot, and goes on with both."""
+
+    kind: Literal["use_copy"] = "use_copy"
+
+
 class Resolve(Message):
     """Resolves a conflict with the version of a file on disk.
 
@@ -238,6 +255,20 @@ class Look(Shared):
     kind: Literal["look"] = "look"
 
 
+class Share(Message):
+    """Requests a share page: one file with the look to turn.
+
+    camera: position and target [m], six numbers
+    light, color, theme: their choices on the page; empty for none
+    """
+
+    kind: Literal["share"] = "share"
+    camera: list[Coordinate] = Field(min_length=6, max_length=6)
+    light: str = Field(max_length=64)
+    color: str = Field(max_length=64)
+    theme: Literal["dark", "light"] = "dark"
+
+
 class Hand(Message):
     """Answers another page that asks for the edit lock."""
 
@@ -286,6 +317,7 @@ FromPage = Annotated[
     | Step
     | Save
     | Open
+    | UseCopy
     | Resolve
     | Dismiss
     | Proceed
@@ -304,6 +336,7 @@ FromPage = Annotated[
     | Take
     | Keep
     | Look
+    | Share
     | Hand
     | Play
     | Against

@@ -182,6 +182,16 @@ class Saved(Message):
     name: str
 
 
+class SharePage(Message):
+    """A share page, as UTF-8, to be kept as a file. hairs: number of its hairs, of the ``of`` of the look."""
+
+    kind: Literal["share_page"] = "share_page"
+    name: str
+    hairs: int
+    of: int
+    arrays: ClassVar[dict[str, str]] = {"text": "u1"}
+
+
 class Notice(Message):
     """A short message of what has happened."""
 
