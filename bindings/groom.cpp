@@ -78,21 +78,22 @@ nb::ndarray<nb::numpy, double> curl_curves(const Array3<double> &points, const A
     return to_numpy<double>(std::move(result), {locks * static_cast<size_t>(count), 3});
 }
 
-nb::ndarray<nb::numpy, double> push_out_curves(const Array3<double> &points, const Array1<int> &offsets, const Solid &body,
-                                               double margin) {
-    const CurveView curves{vectors<Vec3>(points), view(offsets)};
-    std::vector<Vec3> result;
-    {
-        nb::gil_scoped_release release;
-        result = push_out(curves, body, margin);
-    }
-    return to_numpy<double>(std::move(result), {curves.points.size(), 3});
-}
-
 std::vector<const Solid *> solids(const nb::list &bodies) {
     std::vector<const Solid *> result;
     for (const nb::handle body : bodies) result.push_back(nb::cast<const Solid *>(body));
     return result;
+}
+
+nb::ndarray<nb::numpy, double> push_out_curves(const Array3<double> &points, const Array1<int> &offsets, const nb::list &bodies,
+                                               double margin) {
+    const CurveView curves{vectors<Vec3>(points), view(offsets)};
+    const std::vector<const Solid *> all = solids(bodies);
+    std::vector<Vec3> result;
+    {
+        nb::gil_scoped_release release;
+        result = push_out(curves, all, margin);
+    }
+    return to_numpy<double>(std::move(result), {curves.points.size(), 3});
 }
 
 // (body (k,), point (k,), triangle (k,), place (k, 3), depth (k,)) of places in a body.
@@ -231,8 +232,8 @@ void bind_groom(nb::module_ &module) {
     module.def("curl_curves", &curl_curves, "points"_a, "offsets"_a, nb::kw_only(), "axis"_a, "leader"_a, "counted"_a,
                "keep_length"_a, "count"_a, "arrays"_a,
                "Winds each shape curve into a curl of count evenly spaced points; the arrays are those of groom/curl.h.");
-    module.def("push_out", &push_out_curves, "points"_a, "offsets"_a, "body"_a, "margin"_a,
-               "Points of curves that are moved out of a Solid, to a distance of margin [m]; roots stay.");
+    module.def("push_out", &push_out_curves, "points"_a, "offsets"_a, "bodies"_a, "margin"_a,
+               "Points of curves that are moved out of Solids, to a distance of margin [m]; roots stay.");
     module.def("sunk_places", &sunk_places, "points"_a, "offsets"_a, "bodies"_a, "root_depth"_a, "root_length"_a,
                "Places of curves inside Solids: body (k,), point before it (k,), triangle (k,), place (k, 3), depth (k,) [m].");
     module.def("crossings", &crossings, "points"_a, "offsets"_a, "thickness"_a,

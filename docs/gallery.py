@@ -110,8 +110,12 @@ def variant(recipe: Path, head: str) -> str:
 
 
 def digest(recipe: Path, head: str, camera: Shot) -> str:
-    """Digest of all that a picture is made of, but for the program."""
-    parts = [load(recipe)[0], (ROOT / "examples" / head / "head.usdc").read_bytes(), repr(astuple(camera))]
+    """Digest of all that a picture is made of, but for the program and the folder that it is in."""
+    parts = [
+        load(recipe)[0].replace(f"{ROOT}/", ""),
+        (ROOT / "examples" / head / "head.usdc").read_bytes(),
+        repr(astuple(camera)),
+    ]
     made = hashlib.sha256()
     for part in parts:
         made.update(part if isinstance(part, bytes) else part.encode())

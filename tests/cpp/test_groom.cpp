@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <boost/test/unit_test.hpp>
+#include <memory>
 #include <numbers>
 #include <random>
 
@@ -147,12 +148,36 @@ BOOST_AUTO_TEST_CASE(frames_do_not_spin_where_a_shape_reverses) {
     for (const Vec3 &p : result) BOOST_TEST(p.allFinite());
 }
 
+std::vector<Vec3> pushed_out(const std::vector<Vec3> &curve, const std::vector<const OwnedMesh *> &meshes, double margin) {
+    const std::vector<int> offsets{0, static_cast<int>(curve.size())};
+    std::vector<std::unique_ptr<Solid>> owned;
+    std::vector<const Solid *> bodies;
+    for (const OwnedMesh *mesh : meshes) bodies.push_back(owned.emplace_back(std::make_unique<Solid>(mesh->view())).get());
+    return push_out({curve, offsets}, bodies, margin);
+}
+
+BOOST_AUTO_TEST_CASE(a_curve_between_two_overlapping_bodies_is_outside_of_both) {
+    const OwnedMesh body = octahedron();
+    OwnedMesh wide = octahedron(); // the curve leaves the first body inside of it
+    for (Vec3 &p : wide.points) p = Vec3(3.0, 0.5, 3.0).cwiseProduct(p) - Vec3(0.0, 1.2, 0.0);
+    std::vector<Vec3> curve;
+    for (int i = 0; i <= 80; ++i) curve.emplace_back(0.3 + 0.004 * i, 0.5 - 0.02 * i, 0.22);
+    const auto depth = [&](const OwnedMesh &mesh, const std::vector<Vec3> &points) {
+        double most = 0.0;
+        for (const Vec3 &p : points) most = std::max(most, -Solid(mesh.view()).signed_distance(p).distance);
+        return most;
+    };
+    BOOST_TEST(depth(wide, pushed_out(curve, {&body}, 0.01)) > 0.05);
+    const std::vector<Vec3> result = pushed_out(curve, {&body, &wide}, 0.01);
+    BOOST_TEST(depth(body, result) < 1e-9);
+    BOOST_TEST(depth(wide, result) < 1e-9);
+}
+
 BOOST_AUTO_TEST_CASE(a_curve_through_a_body_comes_out_and_keeps_its_root) {
     const OwnedMesh body = octahedron();
     std::vector<Vec3> curve;
     for (int i = 0; i <= 40; ++i) curve.emplace_back(0.05 + 0.02 * i, 0.95 - 0.02 * i, 0.02); // descends inside, near a face
-    const std::vector<int> offsets{0, static_cast<int>(curve.size())};
-    const std::vector<Vec3> result = push_out({curve, offsets}, Solid(body.view()), 0.01);
+    const std::vector<Vec3> result = pushed_out(curve, {&body}, 0.01);
     BOOST_TEST(result.front() == curve.front());
     for (size_t i = 1; i < result.size(); ++i) BOOST_TEST(result[i].lpNorm<1>() >= 1.0 - 1e-9); // outside of the octahedron
 }
@@ -161,8 +186,7 @@ BOOST_AUTO_TEST_CASE(curves_at_a_sufficient_distance_do_not_move) {
     const OwnedMesh body = octahedron();
     std::vector<Vec3> curve = straight(20, 1.0);
     for (Vec3 &p : curve) p.y() += 1.0;
-    const std::vector<int> offsets{0, 20};
-    const std::vector<Vec3> result = push_out({curve, offsets}, Solid(body.view()), 0.01);
+    const std::vector<Vec3> result = pushed_out(curve, {&body}, 0.01);
     BOOST_TEST(std::equal(result.begin(), result.end(), curve.begin()));
 }
 
@@ -174,8 +198,7 @@ BOOST_AUTO_TEST_CASE(a_curl_pushed_out_of_a_body_keeps_its_length) {
         const double s = 0.12 * i / 300.0, phase = 2.0 * std::numbers::pi * s / 6.5e-3;
         curve.emplace_back(0.03 + 0.1 * s + 2.5e-3 * std::sin(phase), 0.05 - s, 0.02 + 2.5e-3 * (std::cos(phase) - 1.0));
     }
-    const std::vector<int> offsets{0, static_cast<int>(curve.size())};
-    const std::vector<Vec3> result = push_out({curve, offsets}, Solid(body.view()), 1e-3);
+    const std::vector<Vec3> result = pushed_out(curve, {&body}, 1e-3);
     double before = 0.0, after = 0.0;
     for (size_t i = 1; i < result.size(); ++i) {
         BOOST_TEST(result[i].lpNorm<1>() >= 0.1 - 1e-9);
@@ -205,8 +228,7 @@ BOOST_AUTO_TEST_CASE(a_curve_straight_into_a_body_is_led_along_it_with_its_lengt
             for (Triangle &t : body.triangles) std::swap(t[1], t[2]);
         std::vector<Vec3> curve;
         for (int i = 0; i <= 20; ++i) curve.emplace_back(root + (reversed ? -0.01 : 0.01) * i * inward);
-        const std::vector<int> offsets{0, static_cast<int>(curve.size())};
-        const std::vector<Vec3> result = push_out({curve, offsets}, Solid(body.view()), 1e-3);
+        const std::vector<Vec3> result = pushed_out(curve, {&body}, 1e-3);
         const auto [most, least, whole] = stretches(curve, result);
         BOOST_TEST(least > 0.5);
         BOOST_TEST(most < 2.0);
@@ -220,8 +242,7 @@ BOOST_AUTO_TEST_CASE(a_push_out_of_triangles_that_face_against_one_another_stays
     for (size_t t = 0; t < body.triangles.size(); t += 3) std::swap(body.triangles[t][1], body.triangles[t][2]);
     std::vector<Vec3> curve;
     for (int i = 0; i <= 200; ++i) curve.emplace_back(0.5 + 2e-3 * std::sin(0.5 * i), 0.5 - 2e-3 * i, 2e-3 * std::cos(0.5 * i));
-    const std::vector<int> offsets{0, static_cast<int>(curve.size())};
-    const auto [most, least, whole] = stretches(curve, push_out({curve, offsets}, Solid(body.view()), 2e-3));
+    const auto [most, least, whole] = stretches(curve, pushed_out(curve, {&body}, 2e-3));
     BOOST_TEST((whole > 0.5 && whole < 2.0));
 }
 

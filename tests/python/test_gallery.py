@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import re
+import shutil
 import tomllib
 from functools import cache
 from pathlib import Path
@@ -73,6 +74,21 @@ def test_a_picture_is_due_until_it_holds_the_digest_of_its_recipe_and_camera(
     moved = dataclasses.replace(bob.shots["close"][1], height=7.0)
     bob.shots["close"] = ("adult", moved)
     assert [names for _, names in gallery.due([bob], again=False)] == [["adult", "close"], ["child"]]
+
+
+def test_a_picture_is_not_due_in_another_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.syspath_prepend(str(ROOT / "docs"))
+    import gallery
+
+    (bob,) = (style for style in gallery.read_styles() if style.name == "bob")
+    mark = gallery.digest(bob.recipe, *bob.shots["close"])
+    for folder in ("types", "looks"):
+        shutil.copytree(ROOT / "examples" / folder, tmp_path / "examples" / folder)
+    for head in HEADS:
+        (tmp_path / "examples" / head).mkdir()
+        shutil.copy(ROOT / "examples" / head / "head.usdc", tmp_path / "examples" / head)
+    monkeypatch.setattr(gallery, "ROOT", tmp_path)
+    assert gallery.digest(tmp_path / bob.recipe.relative_to(ROOT), *bob.shots["close"]) == mark
 
 
 def test_locks_of_a_style_are_rooted_in_the_scalp_and_stay_out_of_the_head(style: tuple[str, str, Groom]):

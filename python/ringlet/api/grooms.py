@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ringlet.api.progress import Progress
 from ringlet.data.errors import UserError
+from ringlet.data.groom import shows
 from ringlet.data.reads import recorded
 
 if TYPE_CHECKING:
@@ -99,12 +100,14 @@ def groom_inputs(recipe: Recipe, memory: Memory | None = None, notes: list[str] 
     if recipe.scalp_file is None:
         raise UserError(f"{recipe.path or 'recipe'}: scalp.file is missing; name the file of the head")
     chosen = recipe.scalp
-    scalp = _cached(
+    cage = chosen.surface == "cage"
+    scalp, meshes_of_head = _cached(
         memory,
         recipe.scalp_file,
         f"{chosen.mesh} {chosen.surface} {chosen.space}",
-        lambda file: io.read_mesh(file, chosen.mesh, space=chosen.space, cage=chosen.surface == "cage", notes=notes),
+        lambda file: (io.read_mesh(file, chosen.mesh, space=chosen.space, cage=cage, notes=notes), _meshes(file, cage)),
     )
+    hidden = _hidden(recipe)
     textures = {name: _cached(memory, file, "texture", io.read_texture) for name, file in recipe.map_files().items()}
     scalp = replace(scalp, textures=textures)
     drawn = None
@@ -129,8 +132,9 @@ def groom_inputs(recipe: Recipe, memory: Memory | None = None, notes: list[str] 
         "drawn_guides": drawn,
         "offsets": offsets,
         "helpers": helpers,
-        "hidden": _hidden(recipe),
+        "hidden": hidden,
         "meshes": meshes,
+        "colliders": [mesh for mesh in meshes_of_head if mesh.name != scalp.name and shows(mesh.name, hidden)],
         "scalp_file": recipe.scalp_file,
         "scalp_prim": recipe.scalp.mesh,
         "space": io.read_space(recipe.scalp_file, space=recipe.scalp.space),
@@ -326,9 +330,12 @@ def check_groom(
 
 def _beside_scalp(groom: Groom) -> list[Mesh]:
     """The visible meshes in the file of the scalp, but for the scalp."""
+    meshes = _meshes(groom.scalp_file, groom.cage) if groom.scalp_file else []
+    return [mesh for mesh in meshes if mesh.name != groom.scalp.name and groom.shows(mesh.name)]
+
+
+def _meshes(head: Path, cage: bool) -> list[Mesh]:
+    """The visible meshes in the file of a head; none in an OBJ."""
     from ringlet import io
 
-    if groom.scalp_file is None or groom.scalp_file.suffix == ".obj":
-        return []
-    meshes = io.read_meshes(groom.scalp_file, groom.cage)
-    return [mesh for mesh in meshes if mesh.name != groom.scalp.name and groom.shows(mesh.name)]
+    return [] if head.suffix == ".obj" else io.read_meshes(head, cage)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -161,9 +162,14 @@ class Groom:
 
     def shows(self, mesh: str) -> bool:
         """Whether a mesh of the head's file, by its name, is not replaced by hair."""
-        return mesh.rpartition(" ")[2] not in self.hidden
+        return shows(mesh, self.hidden)
 
     @property
     def origin(self) -> NDArray[np.float64]:
         """The origin near the head [m], relative to which single precision is exact, shape (3,); 0 up to 8 m away."""
         return origin_of(self.scalp.points if len(self.scalp.points) else self.locks.points)
+
+
+def shows(mesh: str, hidden: Collection[str]) -> bool:
+    """Whether a mesh of the head's file, by its name, is none of the hidden prims."""
+    return mesh.rpartition(" ")[2] not in hidden

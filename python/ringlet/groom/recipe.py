@@ -86,7 +86,7 @@ class Recipe(Section):
     curl: Curl | None = Field(default=None, description="the curl; straight hair when absent")
     edit: list[Edit] = Field(default=[], description="what was done to single locks by hand")
     nail: list[Nail] = Field(default=[], description="hair that is held to the skin")
-    clean: Clean = Field(default=Clean(), description="keeping out of the head")
+    clean: Clean = Field(default=Clean(), description="keeping out of the head and of what is worn")
     hairs: HairSettings = Field(default=HairSettings(), description="the hairs of each lock")
     color: ColorSettings | None = Field(default=None, description="colour of the hair; files have none when absent")
     fiber: FiberSettings | None = Field(

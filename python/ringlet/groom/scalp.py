@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
@@ -25,12 +26,14 @@ Samples = tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.float64]]  # id
 
 
 class Scalp:
-    """A mesh in its rest pose and the region of it that carries roots."""
+    """A mesh in its rest pose and the region of it that carries roots.
 
-    def __init__(self, mesh: Mesh, region: str | None) -> None:
-        self.mesh = mesh
-        self.points = np.ascontiguousarray(mesh.points, np.float64)
-        self.triangles = np.ascontiguousarray(mesh.triangles, np.int32)
+    colliders: surfaces that hair stays out of besides the mesh
+    """
+
+    def __init__(self, mesh: Mesh, region: str | None, colliders: Sequence[Mesh] = ()) -> None:
+        self.mesh, self.colliders = mesh, colliders
+        self.points, self.triangles = _contiguous(mesh)
         _check_mesh(mesh)
         try:
             self.region = np.ascontiguousarray(np.sort(mesh.region(region)), np.int32)
@@ -44,6 +47,11 @@ class Scalp:
     def solid(self) -> _core.Solid:
         """The mesh as a solid for distance queries."""
         return _core.Solid(self.points, self.triangles)
+
+    @cached_property
+    def bodies(self) -> list[_core.Solid]:
+        """The mesh and its colliders as solids."""
+        return [self.solid, *(_core.Solid(*_contiguous(body)) for body in self.colliders)]
 
     @cached_property
     def areas(self) -> NDArray[np.float64]:
@@ -213,6 +221,11 @@ class Scalp:
             if len(curves) > 1 and 0.5 < ratio / factor < 2.0:
                 return f"the guides are about {factor:g} times the head's size: check metersPerUnit of both files"
         return "move the guides onto the scalp, or raise guides.tolerance"
+
+
+def _contiguous(mesh: Mesh) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """Points (n, 3) and triangles (m, 3) of the core's types."""
+    return np.ascontiguousarray(mesh.points, np.float64), np.ascontiguousarray(mesh.triangles, np.int32)
 
 
 def axes(curves: Curves, frames: NDArray) -> NDArray[np.float64]:

@@ -72,6 +72,7 @@ def make_groom(
     helpers: Mapping[str, Curves] | None = None,
     hidden: Sequence[str] = (),
     meshes: Mapping[str, Mesh] | None = None,
+    colliders: Sequence[Mesh] = (),
     offsets: HairOffsets | None = None,
     scalp_file: Path | None = None,
     scalp_prim: str | None = None,
@@ -86,6 +87,7 @@ def make_groom(
     helpers:      the curves of the files of ``[curves]``, by name [m]
     hidden:       paths of the meshes of the head's file that the hair replaces
     meshes:       the meshes of the files of ``[meshes]``, by name [m]
+    colliders:    surfaces that locks stay out of besides the scalp, such as a shirt [m]
     offsets:      the hairs of ``[hairs] file``
     scalp_file, scalp_prim, space: source of the mesh, stored in the groom
     progress:     called with (stage, 0, 1) before and (stage, 1, 1) after every stage
@@ -96,7 +98,7 @@ def make_groom(
     memory = memory or Memory()
     where = recipe.path.name if recipe.path else "recipe"
     try:
-        key, surface = _scalp(recipe, scalp, memory)
+        key, surface = _scalp(recipe, scalp, colliders, memory)
         if isinstance(recipe.guides, Drawn) and drawn_guides is None:
             raise UserError(
                 f"guides.file is '{recipe.guides.file}', but no curves were read from it; pass drawn_guides"
@@ -320,7 +322,7 @@ def _worn(operator: Shape, before: Curves, after: Curves, key: str, context: Con
     return cached[1]
 
 
-def _scalp(recipe: Recipe, mesh: Mesh, memory: Memory) -> tuple[str, Scalp]:
+def _scalp(recipe: Recipe, mesh: Mesh, colliders: Sequence[Mesh], memory: Memory) -> tuple[str, Scalp]:
     key = _key(
         str((recipe.seed, recipe.unit, recipe.scalp.region)),
         mesh.points.tobytes(),
@@ -328,9 +330,10 @@ def _scalp(recipe: Recipe, mesh: Mesh, memory: Memory) -> tuple[str, Scalp]:
         *(chunk for kind in (mesh.regions, mesh.maps, mesh.vectors) for chunk in _contents(kind)),
         *(part for name, texture in mesh.textures.items() for part in (name.encode(), texture.digest)),
         b"" if mesh.uv is None else mesh.uv.tobytes(),
+        *(part for body in colliders for part in (body.points.tobytes(), body.triangles.tobytes())),
     )
     if memory.scalp is None or memory.scalp[0] != key:
-        memory.scalp = (key, Scalp(mesh, recipe.scalp.region))
+        memory.scalp = (key, Scalp(mesh, recipe.scalp.region, colliders))
     return memory.scalp
 
 

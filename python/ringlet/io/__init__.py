@@ -4,7 +4,7 @@ from ringlet.io.formats import format_of, open_scene, write_scene
 from ringlet.io.read import read_clip, read_curves, read_mesh, read_space
 from ringlet.io.texture import read_texture
 from ringlet.io.usd.cache import CacheFile, CacheWriter, cache_groom_path, is_cache, open_cache, read_cache, write_cache
-from ringlet.io.usd.camera import read_camera
+from ringlet.io.usd.camera import camera_paths, read_camera
 from ringlet.io.usd.check import problems
 from ringlet.io.usd.groom import as_written, is_groom, read_groom, write_groom
 from ringlet.io.usd.hairs import HairWriter, read_hair_frames, read_hairs, read_stage
@@ -24,6 +24,7 @@ __all__ = [
     "PolygonMesh",
     "as_written",
     "cache_groom_path",
+    "camera_paths",
     "check_target",
     "format_of",
     "head_path",

@@ -13,11 +13,15 @@ public:
 
     double distance() const { return distance_; }
 
+    // Whether a place is in the box around the mesh.
+    bool contains(const Vec3 &place) const {
+        const Eigen::Array3d at = (place - low_).array() * per_length_;
+        return (at >= 0.0).all() && (at < size_.cast<double>()).all();
+    }
+
     // False only if the place is farther from the mesh than distance().
     bool may_be_near(const Vec3 &place) const {
-        const Eigen::Array3d at = (place - low_).array() * per_length_;
-        if (!((at >= 0.0).all() && (at < size_.cast<double>()).all())) return false;
-        return near_[index(at.cast<int>())] != 0;
+        return contains(place) && near_[index(((place - low_).array() * per_length_).cast<int>())] != 0;
     }
 
 private:

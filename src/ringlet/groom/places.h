@@ -22,10 +22,13 @@ struct Allowed {
 };
 
 // Signed distances at consecutive samples of a curve, whose spacing is at most twice the distance of the grid. A curve that is
-// outside stays outside until a sample is near the surface. A sample close to one of known distance needs no query.
+// outside stays outside until a sample is near the surface; so does one whose root is beyond the box around the body. A sample
+// close to one of known distance needs no query.
 class SurfaceProbe {
 public:
-    SurfaceProbe(const Solid &body, const ProximityGrid &grid) : body_(body), grid_(grid) {}
+    SurfaceProbe(const Solid &body, const ProximityGrid &grid, const Vec3 &root) : body_(body), grid_(grid), known_(root) {
+        if (root.allFinite() && !grid.contains(root)) distance_ = 0.0;
+    }
 
     // Whether the signed distance of a place is below `most` [m], at most the distance of the grid; then `above` holds it.
     bool below(const Vec3 &place, double most, SignedDistance &above) {
@@ -44,7 +47,7 @@ public:
 private:
     const Solid &body_;
     const ProximityGrid &grid_;
-    Vec3 known_ = Vec3::Zero();
+    Vec3 known_; // a place, and a lower bound on its distance
     double distance_ = -std::numeric_limits<double>::infinity();
     int near_ = -1;
 };
@@ -57,7 +60,7 @@ void find_below(View<Vec3> points, const Solid &body, const ProximityGrid &grid,
                 const Found &found) {
     constexpr double spacing = 5e-4; // [m]
     constexpr double max_pieces = 100.0;
-    SurfaceProbe probe(body, grid);
+    SurfaceProbe probe(body, grid, points[0]);
     double length_before = 0.0;
     for (size_t k = 0; k + 1 < points.size(); ++k) {
         const Vec3 edge = points[k + 1] - points[k];

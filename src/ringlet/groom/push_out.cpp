@@ -41,12 +41,40 @@ private:
     Vec3 slide_ = Vec3::Zero(); // unit direction along the surface: that of the heading where the curve reaches it
 };
 
-// Computes the moves of the points of one curve. Returns whether any place is too near the body. `lengths`, if not empty, are
+// Bodies with the grids of their surroundings.
+class Bodies {
+public:
+    Bodies(View<const Solid *> bodies, double reach) : bodies_(bodies) {
+        for (const Solid *body : bodies) grids_.emplace_back(body->mesh(), reach);
+    }
+
+    // One probe for each body, for a curve from a root.
+    std::vector<SurfaceProbe> probes(const Vec3 &root) const {
+        std::vector<SurfaceProbe> result;
+        for (size_t k = 0; k < grids_.size(); ++k) result.emplace_back(*bodies_[k], grids_[k], root);
+        return result;
+    }
+
+private:
+    View<const Solid *> bodies_;
+    std::vector<ProximityGrid> grids_;
+};
+
+// Whether the signed distance of a place to the union of bodies is below `most` [m]; then `above` is that to the body in which
+// the place is deepest.
+bool below_any(std::span<SurfaceProbe> probes, const Vec3 &place, double most, SignedDistance &above) {
+    above = {};
+    for (SurfaceProbe &probe : probes)
+        if (SignedDistance one; probe.below(place, most, one) && one.distance < above.distance) above = one;
+    return above.distance < most;
+}
+
+// Computes the moves of the points of one curve. Returns whether any place is too near a body. `lengths`, if not empty, are
 // target lengths of edges; edge k ends in point k.
-bool find_moves(std::span<const Vec3> points, std::span<const double> lengths, const Solid &body, const ProximityGrid &grid,
-                double margin, const Allowed &allowed, std::span<Vec3> moves) {
+bool find_moves(std::span<const Vec3> points, std::span<const double> lengths, const Bodies &bodies, double margin,
+                const Allowed &allowed, std::span<Vec3> moves) {
     bool near = false;
-    SurfaceProbe probe(body, grid);
+    std::vector<SurfaceProbe> probes = bodies.probes(points[0]);
     LengthLimit limited;
     Vec3 move = Vec3::Zero(), before = points[0];
     double along = 0.0;
@@ -63,7 +91,7 @@ bool find_moves(std::span<const Vec3> points, std::span<const double> lengths, c
             Vec3 place = unmoved + move;
             const double wanted = along <= allowed.root_length ? -allowed.root_depth : std::min(margin, 0.5 * along);
             SignedDistance above;
-            const bool pushed = probe.below(place, margin, above) && above.distance < wanted;
+            const bool pushed = below_any(probes, place, margin, above) && above.distance < wanted;
             if (pushed) {
                 place += (wanted - above.distance) * outward(above); // only the missing distance, so that the move starts at 0
                 near = true;
@@ -93,9 +121,9 @@ void smooth_moves(std::span<const Vec3> points, std::span<Vec3> moves, std::vect
 
 } // namespace
 
-std::vector<Vec3> push_out(const CurveView &curves, const Solid &body, double margin, const Allowed &allowed) {
+std::vector<Vec3> push_out(const CurveView &curves, View<const Solid *> solids, double margin, const Allowed &allowed) {
     constexpr int rounds = 4;
-    const ProximityGrid grid(body.mesh(), std::max(margin, least_probe_distance));
+    const Bodies bodies(solids, std::max(margin, least_probe_distance));
     std::vector<Vec3> result(curves.points.begin(), curves.points.end());
 #pragma omp parallel
     {
@@ -108,10 +136,10 @@ std::vector<Vec3> push_out(const CurveView &curves, const Solid &body, double ma
             lengths.assign(points.size(), 0.0);
             for (size_t k = 1; k < points.size(); ++k) lengths[k] = (points[k] - points[k - 1]).norm();
             // Either no round or all of them, so that the result is continuous in the input.
-            if (!find_moves(points, {}, body, grid, margin, allowed, moves)) continue;
+            if (!find_moves(points, {}, bodies, margin, allowed, moves)) continue;
             for (int round = 1; round <= rounds; ++round) {
                 const bool last = round == rounds; // the last round only clears what little is left
-                find_moves(points, last ? std::span<double>() : lengths, body, grid, margin, allowed, moves);
+                find_moves(points, last ? std::span<double>() : lengths, bodies, margin, allowed, moves);
                 if (!last) smooth_moves(points, moves, scratch);
                 for (size_t k = 1; k < points.size(); ++k) points[k] += moves[k];
             }

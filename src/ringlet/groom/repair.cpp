@@ -119,10 +119,8 @@ Repair::Repair(const CurveView &curves, std::vector<const Solid *> bodies, const
     : offsets_(curves.offsets.begin(), curves.offsets.end()), bodies_(std::move(bodies)), allowed_(allowed),
       before_(curves.points.begin(), curves.points.end()), points_(before_), best_(before_),
       fewest_(std::numeric_limits<size_t>::max()), target_(points_.size()), weight_(points_.size()) {
-    for (const Solid *body : bodies_) {
-        grids_.emplace_back(body->mesh(), least_probe_distance);
-        points_ = push_out(this->curves(), *body, body_clearance, allowed_);
-    }
+    for (const Solid *body : bodies_) grids_.emplace_back(body->mesh(), least_probe_distance);
+    points_ = push_out(this->curves(), bodies_, body_clearance, allowed_);
 }
 
 int Repair::round() {

@@ -1,4 +1,4 @@
-"""Removal of locks from the head."""
+"""Removal of locks from the head and from what is worn."""
 
 from __future__ import annotations
 
@@ -16,23 +16,24 @@ from ringlet.groom.shares import LAID
 
 
 class Clean(Operator):
-    """Moves points below the skin, or closer to it than ``margin``, out along the surface normal. The margin grows from
-    0 at the root. A lock that heads straight into the skin is laid along it. Locks keep their lengths. Cornrows lie on
-    the skin as they are; their tails are moved."""
+    """Moves points below the skin, or closer to it than ``margin``, out along the surface normal, and likewise out of
+    all other visible surfaces in the head's file, such as a shirt. The margin grows from 0 at the root. A lock that
+    heads straight into a surface is laid along it. Locks keep their lengths. Cornrows lie on the skin as they are;
+    their tails are moved."""
 
     margin: Annotated[float, Quantity("m", 0.0, 0.1)] = Field(
-        default=0.002, description="distance that locks keep from the skin"
+        default=0.002, description="distance that locks keep from skin and clothes"
     )
 
     def apply(self, curves: Curves, context: Context) -> Curves:
         """Returns the curves outside the mesh."""
         if LAID not in curves.curve:
-            return curves.with_points(_core.push_out(*packed(curves), context.scalp.solid, self.margin))
+            return curves.with_points(_core.push_out(*packed(curves), context.scalp.bodies, self.margin))
         off = _off_scalp(curves)
         counts = np.add.reduceat(off, curves.offsets[:-1], dtype=np.int64)
         points = np.array(curves.points, np.float64)
         points[off] = _core.push_out(
-            np.ascontiguousarray(points[off]), offsets_from_counts(counts), context.scalp.solid, self.margin
+            np.ascontiguousarray(points[off]), offsets_from_counts(counts), context.scalp.bodies, self.margin
         )
         return curves.with_points(points)
 
