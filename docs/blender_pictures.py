@@ -1,6 +1,6 @@
 """Makes the pictures of docs/blender.md: grooms of the example head, made by the extension and rendered by Cycles.
 
-Usage: python docs/blender_pictures.py [PYTHON]: Blender's Python, by default that of `make blender`.
+Usage: python docs/blender_pictures.py [NAME …]; needs `make blender`.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from pxr import Usd, UsdGeom
 
 ROOT = Path(__file__).parents[1]
 HEAD = ROOT / "examples/child/head.usdc"
-PICTURES = {
-    "blender_curls": ROOT / "examples/child/curls.recipe.toml",
-    "blender_box_braids": ROOT / "examples/looks/box_braids.recipe.toml",
-    "blender_high_puff": ROOT / "examples/looks/high_puff.recipe.toml",
+PICTURES = {  # recipe, and the fraction of its hairs
+    "blender_curls": (ROOT / "examples/child/curls.recipe.toml", 0.35),
+    "blender_box_braids": (ROOT / "examples/looks/box_braids.recipe.toml", 0.15),
+    "blender_high_puff": (ROOT / "examples/looks/high_puff.recipe.toml", 0.15),
 }
 
 
@@ -40,7 +40,8 @@ def main() -> None:
                 "extension": str(build(Path(folder))),
                 "head": str(HEAD),
                 "scalp": faces,
-                "recipe": str(PICTURES[name]),
+                "recipe": str(PICTURES[name][0]),
+                "fraction": PICTURES[name][1],
                 "picture": str(ROOT / f"docs/images/{name}.jpg"),
             }
             script = Path(__file__).with_name("blender_render.py")

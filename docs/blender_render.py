@@ -1,6 +1,7 @@
 """Runs in Blender's Python: grows hair on the example head with the extension and renders it with Cycles.
 
-Reads a task as JSON: ``extension``, ``head``, ``scalp`` (faces), ``recipe``, ``picture``.
+Reads a task as JSON: ``extension``, ``head``, ``scalp`` (faces), ``recipe``, ``fraction``
+(of its hairs), ``picture``.
 """
 
 from __future__ import annotations
@@ -26,12 +27,12 @@ def skin_with_scalp(faces: list[int]) -> bpy.types.Object:
     return head
 
 
-def groom(head: bpy.types.Object, recipe: str) -> None:
+def groom(head: bpy.types.Object, recipe: str, fraction: float) -> None:
     """Grows the hair of a recipe, as the button Open Recipe does."""
     grooming, timer = (importlib.import_module(f"{MODULE}.{name}") for name in ("grooming", "timer"))
     bpy.context.view_layer.objects.active = head
     bpy.ops.ringlet.open_recipe(filepath=recipe)
-    head.ringlet.fraction = 0.35
+    head.ringlet.fraction = fraction
     state, start = grooming.state_of(head), time.monotonic()
     while not state.message and not grooming.is_made(head, grooming.key_of(head)):
         bpy.context.view_layer.update()
@@ -92,7 +93,7 @@ def main() -> None:
     bpy.ops.extensions.package_install_files(filepath=task["extension"], repo="user_default", enable_on_install=True)
     bpy.ops.wm.usd_import(filepath=task["head"])
     head = skin_with_scalp(task["scalp"])
-    groom(head, task["recipe"])
+    groom(head, task["recipe"], task["fraction"])
     light_and_camera(head)
     render(task["picture"])
     importlib.import_module(f"{MODULE}.session").session.stop()

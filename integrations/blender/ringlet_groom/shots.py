@@ -260,5 +260,5 @@ def clear(head: bpy.types.Object, moving: str) -> None:
         grooming.remove(thing)
         for file in files:
             if not any(file == getattr(one, "cache_file", None) for own in bpy.data.objects for one in own.modifiers):
-                bpy.data.cache_files.remove(file)
+                bpy.data.batch_remove([file])
     show_motion(head)
