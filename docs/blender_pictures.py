@@ -19,8 +19,8 @@ ROOT = Path(__file__).parents[1]
 HEAD = ROOT / "examples/child/head.usdc"
 PICTURES = {  # recipe, and the fraction of its hairs
     "blender_curls": (ROOT / "examples/child/curls.recipe.toml", 0.35),
-    "blender_box_braids": (ROOT / "examples/looks/box_braids.recipe.toml", 0.15),
-    "blender_high_puff": (ROOT / "examples/looks/high_puff.recipe.toml", 0.15),
+    "blender_box_braids": (ROOT / "examples/looks/box_braids.recipe.toml", 0.4),
+    "blender_high_puff": (ROOT / "examples/looks/high_puff.recipe.toml", 0.6),
 }
 
 

@@ -196,7 +196,7 @@ def shot(folder: Path) -> dict:
     head.ringlet.colliders = floor
     bpy.context.view_layer.objects.active = head
     bpy.ops.ringlet.simulate()
-    wait(lambda: shots.shots.stage == "Simulating" or shots.shots.run is None)
+    wait(lambda: (shots.shots.stage == "Simulating" and shots.shots.part > 0.1) or shots.shots.run is None)
     found["stage"] = shots.shots.stage
     bpy.ops.ringlet.cancel()
     wait(lambda: shots.shots.run is None)
@@ -204,6 +204,7 @@ def shot(folder: Path) -> dict:
     bpy.ops.ringlet.simulate(resume=bool(shots.shots.left))
     wait(lambda: shots.shots.run is None)
     found |= {"message": shots.shots.message, "notes": shots.shots.notes}
+    assert head.ringlet.lock_motion is not None, f"{found} {shots.shots}"
     found["lock_motion"] = root_motion(head.ringlet.lock_motion)
     bpy.ops.ringlet.bake()
     wait(lambda: shots.shots.run is None)
