@@ -165,6 +165,15 @@ def stored(folder: Path) -> dict:
     return found
 
 
+def root_motion(thing: bpy.types.Object) -> list[float]:
+    """Mean displacement of the roots of curves from frame 1 to 4 [m]."""
+    rows, places = np.concatenate([[0], np.cumsum(of("curves").counts_of(thing.data))[:-1]]), []
+    for frame in (1, 4):
+        bpy.context.scene.frame_set(frame)
+        places.append(points(thing)[rows])
+    return (places[1] - places[0]).mean(axis=0).tolist()
+
+
 def shot(folder: Path) -> dict:
     """A shot of a head that slides: canceled, resumed and played, and its hairs baked."""
     head = begin()
@@ -179,7 +188,7 @@ def shot(folder: Path) -> dict:
     scene.frame_set(1)
     wait(settled)
     shots.begin_text(head)
-    head.ringlet.shot.ringlet_changes = json.dumps([{"set": ["preroll"], "value": 2}])
+    head.ringlet.shot.ringlet_changes = json.dumps([{"set": ["preroll"], "value": 300}])
     floor = bpy.data.collections.new("floor")
     bpy.ops.mesh.primitive_plane_add(size=1.0, location=(0, 0, -0.2))
     scene.collection.children.link(floor)
@@ -187,7 +196,7 @@ def shot(folder: Path) -> dict:
     head.ringlet.colliders = floor
     bpy.context.view_layer.objects.active = head
     bpy.ops.ringlet.simulate()
-    wait(lambda: shots.shots.stage == "frames" or shots.shots.run is None)
+    wait(lambda: (shots.shots.stage == "Simulating" and shots.shots.part > 0.1) or shots.shots.run is None)
     found["stage"] = shots.shots.stage
     bpy.ops.ringlet.cancel()
     wait(lambda: shots.shots.run is None)
@@ -195,16 +204,11 @@ def shot(folder: Path) -> dict:
     bpy.ops.ringlet.simulate(resume=bool(shots.shots.left))
     wait(lambda: shots.shots.run is None)
     found |= {"message": shots.shots.message, "notes": shots.shots.notes}
+    assert head.ringlet.lock_motion is not None, f"{found} {shots.shots}"
+    found["lock_motion"] = root_motion(head.ringlet.lock_motion)
     bpy.ops.ringlet.bake()
     wait(lambda: shots.shots.run is None)
-    found["baked"] = shots.shots.message
-    for name in ("lock_motion", "hair_motion"):
-        thing, roots = getattr(head.ringlet, name), []
-        steps = np.concatenate([[0], np.cumsum(of("curves").counts_of(thing.data))[:-1]])
-        for frame in (1, 4):
-            scene.frame_set(frame)
-            roots.append(points(thing)[steps])
-        found[name] = (roots[1] - roots[0]).mean(axis=0).tolist()
+    found |= {"baked": shots.shots.message, "hair_motion": root_motion(head.ringlet.hair_motion)}
     bpy.ops.ringlet.clear_motion()
     found["cleared"] = [len(bpy.data.cache_files), head.ringlet.hair_curves.hide_viewport]
     return found
@@ -228,8 +232,9 @@ def killed(_folder: Path) -> dict:
     return found
 
 
-def guides(_folder: Path) -> dict:
+def guides(folder: Path) -> dict:
     """Sculpted guides, a vertex group as a map, operators, and a variant."""
+    bpy.ops.wm.save_as_mainfile(filepath=str(folder / "scene.blend"))
     head = begin()
     own = head.ringlet
     found = {"before": size(head)}

@@ -127,6 +127,7 @@ def test_a_groom_is_there_after_save_and_reload_and_without_the_extension(act):
 def test_a_shot_is_canceled_resumed_played_and_baked(act):
     found = act("shot")
     assert "Save the .blend first" in found["unsaved"] or "save it first" in found["unsaved"]
+    assert found["stage"] == "Simulating" and found["left"] > 0
     assert found["canceled"] == "" and found["message"] == "" and found["baked"] == ""
     for name in ("lock_motion", "hair_motion"):
         np.testing.assert_allclose(found[name], [0.03, 0, 0], atol=1e-4)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import subprocess
-from functools import cache
 from pathlib import Path
 from typing import ClassVar
 
@@ -16,21 +15,11 @@ from .properties import Document
 from .refused import Refused
 from .session import Request, clean_environment, session
 
-
-@cache
-def looks() -> dict[str, dict[str, str]]:
-    """Recipes that come with Ringlet, by name: ``group`` and ``text``."""
-    return json.loads(Path(__file__).with_name("looks.json").read_text(encoding="utf-8"))
-
-
-@cache
-def _look_items() -> list[tuple[str, str, str]]:
-    return [(name, name.replace("_", " "), f"{one['group']}: {name}") for name, one in looks().items()]
-
-
-@cache
-def _operator_items() -> list[tuple[str, str, str]]:
-    return [(name, name.replace("_", " "), text[:200]) for name, (text, _) in schema.operators().items()]
+# Recipes that come with Ringlet, by name: group and text.
+LOOKS = json.loads(Path(__file__).with_name("looks.json").read_text(encoding="utf-8"))
+LOOK_ITEMS = [(name, name.replace("_", " "), f"{one['group']}: {name}") for name, one in LOOKS.items()]
+OPERATOR_ITEMS = [(name, name.replace("_", " "), text[:200]) for name, (text, _) in schema.operators().items()]
+CHANGES = [(name, name, "") for name in ("remove", "up", "down")]
 
 
 class OnHead:
@@ -65,14 +54,14 @@ class Begin(OnHead, bpy.types.Operator):
     bl_idname = "ringlet.begin"
     bl_label = "Grow Hair"
 
-    look: EnumProperty(name="Look", items=lambda _self, _context: _look_items())
+    look: EnumProperty(name="Look", items=LOOK_ITEMS)
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         return head_of(context) is not None
 
     def act(self, _context: bpy.types.Context, head: bpy.types.Object) -> None:
-        grooming.begin(head, looks()[self.look]["text"], f"{head.name} {self.look}")
+        grooming.begin(head, LOOKS[self.look]["text"], f"{head.name} {self.look}")
 
 
 class OpenRecipe(OnHead, bpy.types.Operator):
@@ -122,7 +111,7 @@ class AddOperator(OnHead, bpy.types.Operator):
     bl_idname = "ringlet.add_operator"
     bl_label = "Add Operator"
 
-    op: EnumProperty(name="Operator", items=lambda _self, _context: _operator_items())
+    op: EnumProperty(name="Operator", items=OPERATOR_ITEMS)
 
     def act(self, _context: bpy.types.Context, head: bpy.types.Object) -> None:
         Document(head, "recipe").change(add="shape", at=len(head.ringlet.shape), entry={"op": self.op})
@@ -135,7 +124,7 @@ class ChangeOperator(OnHead, bpy.types.Operator):
     bl_label = "Change Operator"
 
     row: IntProperty()
-    what: EnumProperty(items=[(name, name, "") for name in ("remove", "up", "down")])
+    what: EnumProperty(items=CHANGES)
 
     def act(self, _context: bpy.types.Context, head: bpy.types.Object) -> None:
         document, to = Document(head, "recipe"), self.row + {"up": -1, "down": 1, "remove": 0}[self.what]

@@ -21,6 +21,7 @@ from .session import Request, session
 COLLIDERS, CLOTH, CACHE, HAIR = "colliders.usdc", "cloth.usdc", "cache.usdc", "hair.usdc"
 PIN = "pin"  # vertex group of cloth that is held
 MODIFIER = "Ringlet cache"
+STAGES = {"sim": "Simulating"}  # of Ringlet, as the panel says it
 STARTING_SHOT = """# How the hair of {head} moves. SI units; all settings: ringlet schema shot.
 ringlet = 1
 groom = "{recipe}"
@@ -187,7 +188,7 @@ def _meshes(head: bpy.types.Object, collection: str) -> list[bpy.types.Object]:
 
 
 def _progress(stage: str, done: int, total: int) -> None:
-    shots.stage, shots.part = stage, done / max(total, 1)
+    shots.stage, shots.part = STAGES.get(stage, stage.capitalize()), done / max(total, 1)
 
 
 def _end(line: str, left: int = 0) -> None:
@@ -258,6 +259,6 @@ def clear(head: bpy.types.Object, moving: str) -> None:
         files = [one.cache_file for one in thing.modifiers if one.type == "MESH_SEQUENCE_CACHE" and one.cache_file]
         grooming.remove(thing)
         for file in files:
-            if not file.users:
-                bpy.data.cache_files.remove(file)
+            if not any(file == getattr(one, "cache_file", None) for own in bpy.data.objects for one in own.modifiers):
+                bpy.data.batch_remove([file])
     show_motion(head)

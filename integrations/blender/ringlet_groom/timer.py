@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import traceback
+
 import bpy
 from bpy.app.handlers import persistent
 
@@ -12,11 +14,18 @@ BUSY, IDLE = 0.03, 0.2  # s between two looks
 
 
 def tick() -> float:
-    """Takes answers, reads the next frame of a shot, and asks for grooms that have changed."""
-    session.poll()
-    shots.advance()
-    for head in list(grooming.heads()):
-        grooming.watch(head)
+    """Takes answers, reads the next frame of a shot, and asks for grooms that have changed.
+
+    Blender ends a timer that raises: a mistake of the extension becomes a line in the panel, and the timer goes on.
+    """
+    try:
+        session.poll()
+        shots.advance()
+        for head in list(grooming.heads()):
+            grooming.watch(head)
+    except Exception as error:
+        traceback.print_exc()
+        session.error = f"This is a mistake in the extension ({error}); see the console"
     busy = session.busy or shots.shots.run is not None
     if busy:
         _redraw()
