@@ -13,7 +13,7 @@ sources := pyproject.toml CMakeLists.txt $(wildcard cmake/* python/ringlet/*/__i
 # What the review page is made from.
 page := tools/web.sh $(wildcard web/*.json web/*.ts web/*.html) $(shell find web/src web/public -type f)
 
-.PHONY: help build demo view test blender bench docs gallery lint clean
+.PHONY: help build demo view test blender extension bench docs gallery lint clean
 
 help: ## list the targets
 	@grep -E '^[a-z]+:.*##' Makefile | sed -E 's/:.*## /\t/' | expand -t 10
@@ -54,6 +54,9 @@ test: .venv/tooled ## everything: C++, Python, known answers, lints, documents
 blender: ## Blender's Python module in .venv-blender, 374 MB, for the tests that open files with it
 	python3.11 -m venv .venv-blender
 	.venv-blender/bin/pip install --quiet bpy==5.0.1
+
+extension: build ## the extension for Blender: one zip in dist
+	@$(python) tools/blender_extension.py dist
 
 sanitize: .venv/tooled ## the C++ tests with the sanitizers of addresses, undefined behaviour and threads
 	@tools/sanitize.sh

@@ -45,8 +45,9 @@ PYTHON = {
     "report": {"data"},
     "api": {"data", "_core", "adoption", "groom", "shot", "sim", "rest", "validate", "io", "picture", "report"},
     "viewer": {"data", "_core", "groom", "shot", "sim", "io", "picture", "api"},
+    "host": {"data", "groom", "shot", "io", "report", "api", "viewer"},
     "farm": {"data", "groom", "shot", "report", "api"},
-    API: {"data", "api", "groom", "shot", "sim", "rest", "viewer", "farm"},
+    API: {"data", "api", "groom", "shot", "sim", "rest", "viewer", "farm", "host"},
     "cli": {API},
 }
 OUTSIDE = ("bench", "examples")  # folders that may use the public API only

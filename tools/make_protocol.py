@@ -15,6 +15,8 @@ from pydantic.fields import FieldInfo
 from ringlet.viewer import protocol
 
 FILE = Path(__file__).parents[1] / "web/src/protocol.ts"
+# What messages of the server consist of.
+PARTS = (protocol.Stage, protocol.Change, protocol.Fix, protocol.Difference, protocol.Problem, protocol.Person)
 ARRAYS = {"f4": "Float32Array", "f8": "Float64Array", "i4": "Int32Array", "u4": "Uint32Array", "u1": "Uint8Array"}
 PLAIN: dict[Any, str] = {
     str: "string",
@@ -24,6 +26,22 @@ PLAIN: dict[Any, str] = {
     Any: "Json",
     types.NoneType: "null",
 }
+
+
+PARTS = (
+    protocol.Stage,
+    protocol.Change,
+    protocol.Fix,
+    protocol.Difference,
+    protocol.Problem,
+    protocol.Person,
+    protocol.Shared,
+    protocol.Snapshot,
+    protocol.Note,
+    protocol.Placement,
+    protocol.Reference,
+    protocol.StageCamera,
+)  # of messages
 
 
 def kind(annotation: Any) -> str:
@@ -77,7 +95,7 @@ def lines() -> Iterator[str]:
     yield f"export const VERSION = {protocol.VERSION};"
     yield "export type Json = string | number | boolean | null | Json[] | { [key: string]: Json };"
     yield ""
-    for message in (protocol.Stage, protocol.Change, protocol.Fix, protocol.Difference, protocol.Problem):
+    for message in PARTS:
         yield from interface(message, from_page=False)
     for message in union:
         yield from interface(message, from_page=True)

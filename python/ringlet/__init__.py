@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from ringlet.data.groom import Groom
     from ringlet.farm import compare_wedge, wedge, write_wedge_template
     from ringlet.groom.stack import Memory
+    from ringlet.host import serve
     from ringlet.rest.loft import Loft
     from ringlet.shot.cloth import ClothMaterial
     from ringlet.shot.contact import Contact
@@ -53,6 +54,7 @@ _SLOW = {
     "Strands": "ringlet.sim.strands",
     "compare_wedge": "ringlet.farm",
     "explain": "ringlet.data.explain",
+    "serve": "ringlet.host",
     "solver_counts": "ringlet.api.clock",
     "view": "ringlet.viewer",
     "wedge": "ringlet.farm",

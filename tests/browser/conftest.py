@@ -157,9 +157,15 @@ class Review:
 
     def show_all_settings(self) -> None:
         """Shows the settings that the panel of the chosen stage hides at first sight, if there are any."""
-        more = self.page.get_by_role("button", name="Show all settings")
+        more = self.page.get_by_role("button", name="All settings")
         if more.is_visible():
             more.click()
+
+    def unfold(self, setting: str) -> None:
+        """Opens a setting that its panel shows in one line, if it does."""
+        fold = self.page.locator(f'[data-setting="{setting}"].line > .field-head > .unfold')
+        if fold.is_visible():
+            fold.click()
 
     def slider(self, setting: str) -> Any:
         return self.page.locator(f'[data-setting="{setting}"] > input[type=range]')

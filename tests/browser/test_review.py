@@ -242,6 +242,7 @@ def test_regions_and_overlays_are_chosen_from_lists(opened: Any, folder: Path):
     review: Review = opened()
     review.choose("shape/0")
     review.show_all_settings()
+    review.unfold("shape.0.mask")
     mask = review.page.locator('[data-setting="shape.0.mask"] details').first
     mask.evaluate("(details) => { details.open = true; }")
     review.page.locator('[data-setting="shape.0.mask.region"] select').select_option("scalp", force=True)
@@ -288,6 +289,7 @@ def test_colour_is_edited_and_shown(opened: Any):
     assert different(light, before) > 0.001
     assert light.sum() > before.sum()
     review.show_all_settings()
+    review.unfold("color.dye")
     dye = review.page.locator('[data-setting="color.dye"] details.table')
     dye.evaluate("(details) => { details.open = true; }")
     review.page.locator('[data-setting="color.dye.color"] input').fill("#1020ff")

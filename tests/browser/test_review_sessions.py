@@ -32,7 +32,7 @@ def test_one_page_edits_and_the_other_follows(opened: Any, serve: Any):
     two.page.mouse.down()
     two.page.mouse.move(540, 500, steps=2)
     two.page.mouse.up()
-    assert two.page.get_by_role("button", name="Follow", exact=True).is_visible()
+    assert two.page.get_by_role("button", name="Follow Guest 1").is_visible()
     for answer, leads in (("Not now", False), ("Hand over", True)):
         two.page.get_by_role("button", name="Ask to edit").click()
         one.page.get_by_role("button", name=answer).click()

@@ -171,6 +171,91 @@ BOOST_AUTO_TEST_CASE(the_curved_path_is_the_direction_to_first_order) {
     }
 }
 
+// A free strand with the direction, of its vertices and frames, of a rigid rotation about its first vertex, across the first
+// edge: that has no frame.
+struct RotatingStrand : RandomStrand<RodObjective<double>> {
+    RotatingStrand(int seed, double angle) : RandomStrand(seed), direction(x.size(), 0.0) {
+        const Vec<double> first = position_of(x, 1) - position_of(x, 0), across = cross(first, random_unit(random));
+        const Vec<double> omega = (angle / norm(across)) * across;
+        for (int i = 0; i < vertices; ++i) {
+            StrandRow<double> &r = rows[i];
+            r.free = 1.0;
+            r.frame_free = i > 0 && i + 1 < vertices;
+            const Vec<double> d = cross(omega, position_of(x, i) - position_of(x, 0));
+            for (int k = 0; k < 3; ++k) direction[4 * i + k] = d[k];
+            if (i + 1 == vertices) break;
+            const Vec<double> edge = position_of(x, i + 1) - position_of(x, i);
+            const Vec<double> t = (1.0 / norm(edge)) * edge, about = spin(r.reference.tangent, t, norm(edge));
+            direction[4 * i + 3] = r.rest_length * r.frame_free * (dot(omega, t) - dot(about, cross(omega, edge)));
+        }
+    }
+    std::vector<double> direction;
+};
+
+BOOST_AUTO_TEST_CASE(a_rigid_rotation_strains_nothing) {
+    for (int seed = 0; seed < 10; ++seed) {
+        RotatingStrand strand(seed, 1.2);
+        for (StrandRow<double> &r : strand.rows) r.inertia = 0.0;
+        RodObjective<double> objective(vertices, strand.rows.data(), strand.shapes.data());
+        std::vector<double> to(objective.size()), straight(objective.size());
+        objective.curved_path(strand.x.data(), 1.0, strand.direction.data(), to.data());
+        for (int i = 0; i < objective.size(); ++i) straight[i] = strand.x[i] + strand.direction[i];
+        const double energy = objective.energy(strand.x.data());
+        BOOST_TEST(std::abs(objective.energy(to.data()) - energy) < 1e-12 * energy);
+        BOOST_TEST(std::abs(objective.energy(straight.data()) - energy) > 0.01 * energy);
+    }
+}
+
+// A solver may leave some strands of a group where they are.
+BOOST_AUTO_TEST_CASE(without_a_direction_nothing_changes_by_a_bit) {
+    RandomStrand<RodObjective<double>> strand(6);
+    RodObjective<double> objective(vertices, strand.rows.data(), strand.shapes.data());
+    std::vector<double> direction(objective.size(), 0.0), to(objective.size());
+    objective.curved_path(strand.x.data(), 1.0, direction.data(), to.data());
+    BOOST_TEST(to == strand.x, boost::test_tools::per_element());
+}
+
+// Loads pull along every edge, so that none is left to the stiffness of its stretch.
+BOOST_AUTO_TEST_CASE(with_its_curvature_the_hessian_is_that_along_a_rotation) {
+    for (int seed = 0; seed < 10; ++seed) {
+        RotatingStrand strand(seed, 1.0);
+        Vec<double> before{};
+        for (int i = 0; i < vertices; ++i) {
+            StrandRow<double> &r = strand.rows[i];
+            Vec<double> after{};
+            if (i + 1 < vertices) {
+                const Vec<double> edge = position_of(strand.x, i + 1) - position_of(strand.x, i);
+                after = 2.0 * edge + 0.3 * random_unit(strand.random); // the load behind
+                r.damped_length = norm(edge);
+            }
+            r.inertia_target = position_of(strand.x, i) + (1.0 / r.inertia) * (before - after);
+            before = after;
+        }
+        RodObjective<double> objective(vertices, strand.rows.data(), strand.shapes.data());
+        const int size = objective.size();
+        std::vector<double> gradient(size), memory(RodObjective<double>::Matrix::entries(size)), to(size);
+        RodObjective<double>::Matrix hessian(memory.data(), size);
+        const double energy = objective.evaluate(strand.x.data());
+        const auto second = [&] {
+            double sum = 0.0;
+            for (int c = 0; c < size; ++c)
+                for (int k = 0; k < std::min(RodObjective<double>::Matrix::rows(c), size - c); ++k)
+                    sum += (k > 0 ? 2.0 : 1.0) * hessian.entry(c)[k] * strand.direction[c] * strand.direction[c + k];
+            return sum;
+        };
+        objective.assemble(gradient.data(), hessian);
+        const double gauss_newton = second();
+        objective.add_path_curvature(1.0, hessian);
+        const auto along = [&](double step) {
+            objective.curved_path(strand.x.data(), step, strand.direction.data(), to.data());
+            return objective.energy(to.data());
+        };
+        const double h = 1e-3, difference = (along(h) - 2.0 * energy + along(-h)) / (h * h);
+        BOOST_TEST(std::abs(second() - difference) < 1e-4 * std::abs(difference)); // frames are regularised by 1e-5
+        BOOST_TEST(std::abs(gauss_newton - difference) > 0.01 * std::abs(difference));
+    }
+}
+
 BOOST_AUTO_TEST_CASE(the_largest_step_changes_an_edge_by_twice_its_length) {
     RandomStrand<RodObjective<double>> strand(4);
     RodObjective<double> objective(vertices, strand.rows.data(), strand.shapes.data());

@@ -1,6 +1,6 @@
 """Runs in the Python of Blender: performs an action on files and writes the scene as JSON.
 
-in_blender.py SCENE.json ACTION [FILE …]
+in_blender.py SCENE.json FOLDER ACTION [FILE …]; the folder holds the extension.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parents[2] / "integrations/blender"))
+sys.path.insert(0, sys.argv[2])
 import ringlet_groom
 
 VALUES = {"FLOAT_VECTOR": ("vector", 3), "FLOAT2": ("vector", 2), "FLOAT": ("value", 1), "INT": ("value", 1)}
@@ -98,4 +98,4 @@ def main(action: str, *files: str) -> dict:
 
 
 if __name__ == "__main__":
-    Path(sys.argv[1]).write_text(json.dumps(main(*sys.argv[2:])))
+    Path(sys.argv[1]).write_text(json.dumps(main(*sys.argv[3:])))

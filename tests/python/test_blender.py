@@ -5,23 +5,19 @@ Needs bpy in a separate environment, since it is large and pins libraries: make 
 
 from __future__ import annotations
 
-import json
-import os
-import subprocess
+import zipfile
 from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 import pytest
+from blender import MISSING, PYTHON, build_extension, run
 from ringlet.io import HairWriter, read_curves, read_space, write_cache, write_groom
 from usd_scenes import hairs_of, make_groom, write_head
 
 from ringlet import Cache, convert
 
-ROOT = Path(__file__).parents[2]
-BLENDER = Path(os.environ.get("RINGLET_BLENDER_PYTHON", ROOT / ".venv-blender/bin/python"))
-
-pytestmark = pytest.mark.skipif(not BLENDER.exists(), reason=f"Blender is not installed at {BLENDER}: make blender")
+pytestmark = pytest.mark.skipif(not PYTHON.exists(), reason=MISSING)
 
 
 @pytest.fixture(params=[(0.01, "Y"), (1.0, "Z")], ids=["cm-Y", "m-Z"])
@@ -43,20 +39,19 @@ def groom(tmp_path, request):
     return groom
 
 
+@pytest.fixture(scope="module")
+def extension(tmp_path_factory) -> Path:
+    """A folder with the extension as a package."""
+    folder = tmp_path_factory.mktemp("extension")
+    with zipfile.ZipFile(build_extension(folder)) as file:
+        file.extractall(folder / "ringlet_groom")
+    return folder
+
+
 @pytest.fixture
-def blender(tmp_path):
+def blender(extension, tmp_path):
     """Returns the Blender scene after an action on files (tests/python/in_blender.py)."""
-    # PYTHON… variables of the test run must not reach the Python of Blender.
-    clean = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
-
-    def scene_after(*arguments: object) -> dict:
-        script = Path(__file__).with_name("in_blender.py")
-        command = [str(word) for word in (BLENDER, script, tmp_path / "scene.json", *arguments)]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=120, env=clean, check=False)
-        assert done.returncode == 0, done.stderr[-2000:]
-        return json.loads((tmp_path / "scene.json").read_text())
-
-    return scene_after
+    return lambda *arguments: run("in_blender.py", tmp_path / "scene.json", extension, *arguments)
 
 
 def z_up(points: np.ndarray) -> np.ndarray:

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pytest
 from pages import Page, page, read, serving
 
 import ringlet
@@ -71,8 +70,62 @@ def test_pages_that_follow_receive_the_look_of_the_one_that_leads(folder: Path):
         with page(client, "two") as two:
             assert two.receive("followed")["place"] == ["curl"]
             two.send(kind="look", place=["locks"], frame=None, **look)
-            with pytest.raises(AssertionError, match="another page leads"):
-                two.receive("saved")
+            two.send(kind="point", at=[0.0, 0.0, 0.0])
+            one.send(kind="look", place=["guides"], frame=None, **look)
+            one.send(kind="point", at=[0.1, 0.2, 0.3])
+            assert two.receive("followed")["place"] == ["guides"]
+            assert two.receive("pointer")["at"] == [0.1, 0.2, 0.3]
+        assert not [message for message in one.received if message["kind"] in ("followed", "pointer")]
+
+
+def people(one: Page) -> list[dict[str, Any]]:
+    return one.receive("role")["people"]
+
+
+def test_people_have_names_and_colors_of_their_own(folder: Path):
+    with serving(folder) as client, page(client, "one") as one:
+        assert [person["name"] for person in people(one)] == ["Guest 1"]
+        with page(client, "two") as two:
+            found = people(two)
+            assert [(each["name"], each["leads"], each["you"]) for each in found] == [
+                ("Guest 1", True, False),
+                ("Guest 2", False, True),
+            ]
+            assert found[0]["hue"] != (hue := found[1]["hue"])
+            two.send(kind="introduce", person="  Bo   of Paris ", follows=False)
+            while (last := people(one)[-1])["name"] != "Bo of Paris":
+                pass
+            assert not last["follows"] and last["hue"] == hue
+        while len(people(one)) > 1:
+            pass
+        with page(client, "three"), page(client, "two") as two:
+            assert people(two)[-1]["hue"] == hue  # a page that comes back keeps its color
+
+
+def test_who_asks_to_edit_is_named_and_the_answer_is_announced(folder: Path):
+    with serving(folder) as client, page(client, "one") as one, page(client, "two") as two:
+        two.send(kind="introduce", person="Bo")
+        two.send(kind="lead")
+        assert one.receive("role", asked=True)["asking"] == "Bo"
+        one.send(kind="hand", over=False)
+        assert two.receive("notice")["message"] == "Guest 1 goes on editing"
+        two.send(kind="lead")
+        one.receive("role", asked=True)
+        one.send(kind="hand", over=True)
+        assert one.receive("notice")["message"] == two.receive("notice")["message"] == "Bo can edit now"
+
+
+def test_a_page_that_edits_keeps_the_lock_until_it_rests(folder: Path, monkeypatch):
+    monkeypatch.setattr("ringlet.viewer.edit_lock.ANSWER_AFTER", 0.5)
+    with serving(folder) as client, page(client, "one") as one, page(client, "two") as two:
+        two.send(kind="lead")
+        one.receive("role", asked=True)
+        for k in range(12):
+            one.send(kind="set", changes=[[["curl", "width"], 1.0 + 0.1 * k]], gesture=1)
+            one.receive("heard")
+            time.sleep(0.1)
+        assert one.latest("role")["leads"]
+        assert two.receive("role", leads=True)
 
 
 def forget_unsaved(folder: Path) -> None:

@@ -1,7 +1,10 @@
 // The connection to the server. It comes back on its own when it is lost.
 
+import { tokenOf } from "./address";
 import { decode, encode } from "./codec";
 import { type FromPage, type FromServer, VERSION } from "./protocol";
+
+export type Presence = Extract<FromPage, { kind: "introduce" | "look" | "point" }>;
 
 const FIRST_WAIT = 300;
 const LONGEST_WAIT = 5000;
@@ -9,7 +12,7 @@ const REFUSED = 4403;
 const WRONG = 4400;
 
 // What changes something: it is said again to a server that has not heard it.
-const CHANGES = ["set", "arrange", "mute", "save", "resolve", "restore", "isolate", "drag", "sculpt", "unsculpt"];
+const CHANGES = ["set", "arrange", "mute", "save", "resolve", "restore", "isolate", "drag", "sculpt", "unsculpt", "take_snapshot", "edit_snapshot", "delete_snapshot", "load_snapshot"];
 const STORE = "ringlet-owed"; // what this tab has not been answered when it is left
 
 export type LinkState = "open" | "lost" | "refused";
@@ -30,6 +33,7 @@ export class Link {
     private readonly changed: (state: LinkState, why: string) => void,
     /** Whether this page holds the edit lock. */
     private readonly leads: () => boolean,
+    private readonly person: () => string,
   ) {
     const stored = sessionStorage.getItem(STORE);
     if (stored) {
@@ -54,7 +58,7 @@ export class Link {
 
   /** Connects, and keeps at it. */
   start(): void {
-    const token = location.hash.slice(1);
+    const token = tokenOf(location.hash);
     const scheme = location.protocol === "https:" ? "wss" : "ws";
     const folder = location.pathname.replace(/[^/]*$/, "");
     const socket = new WebSocket(`${scheme}://${location.host}${folder}session?token=${encodeURIComponent(token)}`);
@@ -62,7 +66,7 @@ export class Link {
     socket.onopen = () => {
       this.socket = socket;
       this.wait = FIRST_WAIT;
-      this.send({ kind: "hello", version: VERSION, client: clientName(), leads: this.led || this.leads() });
+      this.send({ kind: "hello", version: VERSION, client: clientName(), leads: this.led || this.leads(), person: this.person() });
       this.led = false;
       this.changed("open", "");
     };
@@ -82,6 +86,11 @@ export class Link {
   /** Sends a message; it is kept as long as nobody has heard it. */
   say(message: FromPage): void {
     this.owed.push(message);
+    this.send(message);
+  }
+
+  /** Sends a message of presence: it is not answered, and the next one of its kind makes up for a lost one. */
+  whisper(message: Presence): void {
     this.send(message);
   }
 

@@ -1,6 +1,7 @@
 // The page: connects what the server says with the picture and the panels.
 
 import "./style.css";
+import { Vector3 } from "three";
 import { h } from "./dom";
 import { Link, type LinkState } from "./link";
 import { Model } from "./model";
@@ -8,14 +9,21 @@ import { Bar } from "./panel/bar";
 import { BrushTool } from "./panel/brush";
 import { CompareBar } from "./panel/compare";
 import { bindKey, plainKey } from "./panel/keys";
+import { Lens } from "./panel/lens";
 import { LockTool } from "./panel/lock";
 import { Look } from "./panel/look";
+import { Notes } from "./panel/notes";
+import { ownName, People } from "./panel/people";
+import { PresenterPointer } from "./panel/pointer";
+import { References } from "./panel/references";
 import { Settings } from "./panel/settings";
+import { Snapshots } from "./panel/snapshots";
 import { Sheets } from "./panel/sheets";
 import { Stack } from "./panel/stack";
 import { ProblemBar } from "./panel/problems";
 import { Notices, Status } from "./panel/status";
 import { TimelineBar } from "./panel/timeline";
+import { Tray } from "./panel/tray";
 import { Viewbar } from "./panel/viewbar";
 import type { FromServer } from "./protocol";
 import { Viewer } from "./view/viewer";
@@ -27,6 +35,9 @@ class App {
   readonly lock: LockTool;
   readonly brush: BrushTool;
   readonly look: Look;
+  readonly tray: Tray;
+  private readonly notes: Notes;
+  private readonly pointer: PresenterPointer;
   private readonly notices = new Notices();
   private readonly problems: ProblemBar;
   private readonly status = new Status(this.model);
@@ -36,7 +47,8 @@ class App {
 
   constructor(root: HTMLElement) {
     const picture = h("main", { class: "picture" });
-    this.problems = new ProblemBar(this.model);
+    const people = new People(this.model, () => this.look);
+    this.problems = new ProblemBar(this.model, people.questions);
     root.append(picture);
     this.viewer = new Viewer(picture);
     this.lock = new LockTool(this.model, this.viewer);
@@ -44,8 +56,13 @@ class App {
     this.brush = new BrushTool(this.model, this.viewer);
     this.brush.changed.push((on) => on && this.lock.choose(-1));
     this.lock.busy = () => this.brush.on;
-    picture.append(this.lock.handles, this.brush.ring);
-    this.viewer.onPaint = () => this.lock.place();
+    this.pointer = new PresenterPointer(this.model, this.viewer);
+    picture.append(this.lock.handles, this.brush.ring, this.pointer.element);
+    this.viewer.onPaint = () => {
+      this.lock.place();
+      this.pointer.place();
+      this.notes?.place();
+    };
     this.viewer.onDraw = (statistics) => this.status.drew(statistics);
     const keys = (names: string, does: string, ...all: string[]) =>
       bindKey({ keys: names, does, on: plainKey(...all), run: (event) => void this.viewer.key(event.key) });
@@ -58,15 +75,26 @@ class App {
     this.viewer.covered = () => [
       left.getBoundingClientRect().right,
       settings.hidden ? 0 : innerWidth - settings.getBoundingClientRect().left,
+      46,
+      98,
     ];
     const viewbar = new Viewbar(this.model, this.viewer, this.brush, name);
     this.look = new Look(this.model, this.viewer, viewbar, this.lock, this.timeline, this.notices);
+    this.tray = new Tray(() => this.look.introduce());
+    const snapshots = new Snapshots(this.model, this.viewer, this.look, this.tray);
+    this.notes = new Notes(this.model, this.viewer, this.look, this.tray);
+    const references = new References(this.model, this.viewer, this.tray, this.notices);
+    picture.append(references.element, this.notes.marks);
+    const lens = new Lens(this.model, this.viewer, this.look, name);
+    viewbar.element.append(lens.button, snapshots.button, this.tray.button);
     root.append(
-      new Bar(this.model, () => this.setTheme(), () => this.look).element,
+      new Bar(this.model, () => this.setTheme(), people.element, () => this.endComparison()).element,
       left,
       settings,
       viewbar.element,
       new CompareBar(this.model, this.viewer, () => this.endComparison()).element,
+      this.tray.element,
+      lens.element,
       this.timeline.element,
       this.status.element,
       this.notices.element,
@@ -79,6 +107,7 @@ class App {
       (message) => this.hear(message),
       (state, why) => this.connected(state, why),
       () => this.model.welcome !== null && this.model.role.leads,
+      ownName,
     );
     addEventListener("beforeunload", (event) => {
       (document.activeElement as HTMLElement | null)?.blur(); // what is typed counts
@@ -193,9 +222,34 @@ class App {
         this.timeline.add(message);
         break;
       case "compared":
-        model.compared = message.name;
-        viewer.compare(message.name !== "");
+        if (message.name) model.compared[message.side] = message;
+        else delete model.compared[message.side];
+        if (message.side !== "a") viewer.compare(message.side, message.name !== "");
         model.tell("compared");
+        break;
+      case "snapshots":
+        model.snapshots = message.snapshots;
+        model.tell("snapshots");
+        break;
+      case "notes":
+        model.notes = message.notes;
+        model.tell("notes");
+        break;
+      case "references":
+        model.references = message.references;
+        model.tell("references");
+        break;
+      case "views":
+        model.views = message.views;
+        model.tell("views");
+        break;
+      case "cameras":
+        model.cameras = message.cameras;
+        model.tell("cameras");
+        break;
+      case "picture":
+        model.setPicture(message.name, message.data as Uint8Array<ArrayBuffer>);
+        model.tell("pictures");
         break;
       case "saved":
         this.notices.show(`${message.name} is saved`);
@@ -203,6 +257,9 @@ class App {
       case "followed":
         model.followed = message;
         model.tell("followed");
+        break;
+      case "pointer":
+        this.pointer.show(message.at && new Vector3(...message.at));
         break;
       case "notice":
         this.notices.show(message.message);
@@ -217,14 +274,14 @@ class App {
   private endComparison(): void {
     const { model } = this;
     if (model.timeline?.against) model.say({ kind: "against", name: "" });
-    else model.say({ kind: "compare", to: "none" });
+    else for (const side of model.others) model.say({ kind: "compare", to: "none", side: side as "b" });
   }
 
   /** Another file is open. */
   private reset(): void {
+    this.model.reset();
     this.lock.choose(-1);
     this.brush.show(false);
-    this.model.reset();
     this.viewer.reset();
     for (const topic of ["document", "timeline", "guides", "compared", "chosen"] as const) this.model.tell(topic);
   }

@@ -3,6 +3,7 @@
 import type { Link } from "./link";
 import { inUnit } from "./panel/units";
 import type {
+  Compared,
   Document,
   Followed,
   FromPage,
@@ -10,13 +11,19 @@ import type {
   Json,
   Measured,
   Names,
+  Note,
   Numbers,
   Problem,
   Progress,
+  Reference,
   Role,
+  Shared,
+  Snapshot,
+  StageCamera,
   Timeline,
   Welcome,
 } from "./protocol";
+import type { Side } from "./view/looks";
 import type { OverlayName } from "./view/overlays";
 
 export type File = "recipe" | "shot";
@@ -37,19 +44,35 @@ type Topic =
   | "progress"
   | "look"
   | "followed"
-  | "overlay";
+  | "overlay"
+  | "snapshots"
+  | "pictures"
+  | "notes"
+  | "references"
+  | "views"
+  | "cameras";
 
 export class Model {
   welcome: Welcome | null = null;
   documents: Partial<Record<File, Document>> = {};
-  role: Role = { kind: "role", leads: true, others: 0, asked: false, asks: false };
+  role: Role = { kind: "role", leads: true, asked: false, asking: "", asks: false, people: [] };
   numbers: Numbers | null = null;
   names: Names = { kind: "names", regions: [], maps: [], vectors: [], curves: [] };
   guides: Guides | null = null;
   measured: Measured | null = null;
   overlay: OverlayName | "" = "";
   timeline: Timeline | null = null;
-  compared = "";
+  /** The looks that are compared, by side; that of the open recipe too, once there is another. */
+  compared: Partial<Record<Side, Compared>> = {};
+  snapshots: Snapshot[] = [];
+  notes: Note[] = [];
+  references: Reference[] = [];
+  /** Bookmarks of the recipe by their number, and the look with which the review opens: 0. */
+  views: Record<string, Shared> = {};
+  /** Cameras of the scene. */
+  cameras: StageCamera[] = [];
+  /** Addresses of the pictures that are kept next to the recipe, by name. */
+  readonly pictures = new Map<string, string>();
   /** What there is in the project to compare with. */
   files: string[] = [];
   /** The stage whose settings are shown, and the file that it belongs to. */
@@ -86,14 +109,27 @@ export class Model {
   reset(): void {
     this.documents = {};
     this.numbers = this.guides = this.measured = this.timeline = null;
-    this.compared = "";
+    this.compared = {};
     this.locks = [];
+    this.followed = null;
     this.chosen = { file: "recipe", place: ["curl"] };
+  }
+
+  /** Keeps a picture of the server. */
+  setPicture(name: string, data: Uint8Array<ArrayBuffer>): void {
+    const before = this.pictures.get(name);
+    if (before) URL.revokeObjectURL(before);
+    this.pictures.set(name, URL.createObjectURL(new Blob([data])));
   }
 
   /** Whether a problem names a setting as wrong. */
   isWrong(file: File, place: Place): boolean {
     return this.problems.some((one) => one.setting && one.file === file && one.setting === place.join("."));
+  }
+
+  /** Sides of the looks that the open one is compared with. */
+  get others(): Side[] {
+    return (["b", "c", "d"] as const).filter((side) => this.compared[side]);
   }
 
   /** Whether the groom of the recipe as it is cannot be made, or is held. */

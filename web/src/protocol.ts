@@ -1,6 +1,6 @@
 // Made by tools/make_protocol.py from python/ringlet/viewer/protocol; change it there.
 
-export const VERSION = 8;
+export const VERSION = 10;
 export type Json = string | number | boolean | null | Json[] | { [key: string]: Json };
 
 /** A stage of the groom. place: path of its settings in the recipe. */
@@ -43,12 +43,99 @@ export interface Problem {
   differences: Difference[];
 }
 
+/** A person at a connected page. */
+export interface Person {
+  name: string;
+  hue: number;
+  leads: boolean;
+  follows: boolean;
+  you: boolean;
+}
+
+/** How the leading page looks at the groom. */
+export interface Shared {
+  camera: number[];
+  focal_length: number;
+  light: string;
+  light_turn: number;
+  color: string;
+  overlay: string;
+  file: "recipe" | "shot";
+  place: (string | number)[];
+  locks: number[];
+  frame: number | null;
+}
+
+/** A snapshot. time: when it was taken, in ISO 8601. */
+export interface Snapshot {
+  id: string;
+  author: string;
+  note: string;
+  time: string;
+  look: Shared;
+}
+
+/** A note; see ``WriteNote``. time: when it was written, in ISO 8601. */
+export interface Note {
+  id: string;
+  author: string;
+  text: string;
+  time: string;
+  resolved: boolean;
+  look: Shared;
+  at: [number, number, number] | null;
+  lock: number | null;
+  point: number;
+  strokes: [number, number][][];
+}
+
+/** Where a reference picture is. */
+export interface Placement {
+  mode: "off" | "beside" | "over";
+  opacity: number;
+  x: number;
+  y: number;
+  scale: number;
+}
+
+/** A reference picture; ``references/ID`` is its ``Picture``. */
+export interface Reference {
+  mode: "off" | "beside" | "over";
+  opacity: number;
+  x: number;
+  y: number;
+  scale: number;
+  id: string;
+  name: string;
+}
+
+/** A camera of the scene: position and target at its first frame [m], and focal length for 36 mm of height [mm]. */
+export interface StageCamera {
+  name: string;
+  camera: number[];
+  focal_length: number;
+}
+
 /** First message of a page. */
 export interface Hello {
   kind: "hello";
   version: number;
   client: string;
   leads?: boolean;
+  person?: string;
+}
+
+/** Names the person of a page. follows: whether the page shows what the leading page looks at. */
+export interface Introduce {
+  kind: "introduce";
+  person?: string;
+  follows?: boolean;
+}
+
+/** Position of the leading page's pointer in the scene [m]; None where it is elsewhere. */
+export interface Point {
+  kind: "point";
+  at: [number, number, number] | null;
 }
 
 /** Requests the edit lock; a page that holds it is asked, and hands it over after a while without an answer. */
@@ -144,11 +231,12 @@ export interface Restore {
   saved_edits?: string;
 }
 
-/** Shows a second groom for comparison: a snapshot, the saved one, another recipe of the project, or none. */
+/** Shows another groom on a side: as it is now, as saved, a snapshot, another recipe of the project, or none. */
 export interface Compare {
   kind: "compare";
-  to: "now" | "saved" | "file" | "none";
+  to: "now" | "saved" | "snapshot" | "file" | "none";
   name?: string;
+  side?: "b" | "c" | "d";
 }
 
 /** Drags a point of an isolated lock to a position [m]. */
@@ -192,13 +280,15 @@ export interface Unsculpt {
 export interface Look {
   kind: "look";
   camera: number[];
+  focal_length?: number;
   light: string;
+  light_turn?: number;
   color: string;
   overlay: string;
   file: "recipe" | "shot";
   place: (string | number)[];
   locks: number[];
-  frame: number | null;
+  frame?: number | null;
 }
 
 /** Answers another page that asks for the edit lock. */
@@ -227,6 +317,97 @@ export interface Watch {
   against?: number[];
 }
 
+/** Takes a snapshot of the current look. picture: PNG or JPEG in base64. */
+export interface TakeSnapshot {
+  kind: "take_snapshot";
+  author?: string;
+  note?: string;
+  look: Shared;
+  picture: string;
+}
+
+/** Changes the note of a snapshot. */
+export interface EditSnapshot {
+  kind: "edit_snapshot";
+  id: string;
+  note: string;
+}
+
+/** Deletes the files of a snapshot. */
+export interface DeleteSnapshot {
+  kind: "delete_snapshot";
+  id: string;
+}
+
+/** Writes a note about what is seen. */
+export interface WriteNote {
+  kind: "write_note";
+  author?: string;
+  text: string;
+  look: Shared;
+  at?: [number, number, number] | null;
+  lock?: number | null;
+  point?: number;
+  strokes?: [number, number][][];
+}
+
+/** Changes the text of a note, or whether it is resolved; None leaves it as it is. */
+export interface EditNote {
+  kind: "edit_note";
+  id: string;
+  text?: string | null;
+  resolved?: boolean | null;
+}
+
+/** Deletes a note. */
+export interface DeleteNote {
+  kind: "delete_note";
+  id: string;
+}
+
+/** Keeps a reference picture. picture: PNG or JPEG in base64. */
+export interface AddReference {
+  kind: "add_reference";
+  name: string;
+  picture: string;
+}
+
+/** Shows a reference picture next to the look, over it, or not. */
+export interface PlaceReference {
+  kind: "place_reference";
+  mode?: "off" | "beside" | "over";
+  opacity?: number;
+  x?: number;
+  y?: number;
+  scale?: number;
+  id: string;
+}
+
+/** Deletes a reference picture. */
+export interface DeleteReference {
+  kind: "delete_reference";
+  id: string;
+}
+
+/** Keeps a look for the recipe: in bookmark 1 to 9, or as the one with which the review opens (0). */
+export interface KeepView {
+  kind: "keep_view";
+  slot: number;
+  look: Shared;
+}
+
+/** Sets the recipe to a snapshot, as one undo step. */
+export interface LoadSnapshot {
+  kind: "load_snapshot";
+  id: string;
+}
+
+/** Sets melanin and redness of the recipe so that its hair has a color. color: sRGB, ``#rrggbb``. */
+export interface PickColor {
+  kind: "pick_color";
+  color: string;
+}
+
 /** First message of the server. */
 export interface Welcome {
   kind: "welcome";
@@ -241,13 +422,14 @@ export interface Welcome {
   colors: Record<string, [number, number, number, number]>;
 }
 
-/** Holder of the edit lock. */
+/** Holder of the edit lock, and the people at the connected pages. */
 export interface Role {
   kind: "role";
   leads: boolean;
-  others: number;
   asked: boolean;
+  asking: string;
   asks: boolean;
+  people: Person[];
 }
 
 /** Names of the recipes and caches of the project; sent again when they change. */
@@ -289,10 +471,10 @@ export interface Body {
   colors: Float32Array;
 }
 
-/** Positions of the locks. side: a, or b for the groom to compare with. */
+/** Positions of the locks. side: a, or another for a groom to compare with. */
 export interface Locks {
   kind: "locks";
-  side: "a" | "b";
+  side: "a" | "b" | "c" | "d";
   draft: boolean;
   points: Float32Array;
   offsets: Int32Array;
@@ -323,7 +505,7 @@ export interface Names {
 /** Hairs relative to their locks; see ``src/ringlet/groom/hairs.h`` for the formula. */
 export interface Hairs {
   kind: "hairs";
-  side: "a" | "b";
+  side: "a" | "b" | "c" | "d";
   count: number;
   points: number;
   knots: number;
@@ -360,7 +542,7 @@ export interface Hairs {
 /** Colours of the hairs, in the order of ``Hairs``; none where the groom has no colour. */
 export interface Colors {
   kind: "colors";
-  side: "a" | "b";
+  side: "a" | "b" | "c" | "d";
   stations: number;
   roughness: number;
   tilt: number;
@@ -421,10 +603,13 @@ export interface Timeline {
   stale: Uint8Array;
 }
 
-/** Name of the groom or cache to compare with; empty for none. */
+/** A look that is compared; ``a`` is the open recipe. */
 export interface Compared {
   kind: "compared";
+  side: "a" | "b" | "c" | "d";
   name: string;
+  detail: string;
+  settings: Record<string, string>;
 }
 
 /** Number of messages that the server has handled for pages of this name. */
@@ -449,13 +634,21 @@ export interface Notice {
 export interface Followed {
   kind: "followed";
   camera: number[];
+  focal_length: number;
   light: string;
+  light_turn: number;
   color: string;
   overlay: string;
   file: "recipe" | "shot";
   place: (string | number)[];
   locks: number[];
   frame: number | null;
+}
+
+/** Position of the leading page's pointer in the scene [m]; None where it is elsewhere. */
+export interface Pointer {
+  kind: "pointer";
+  at: [number, number, number] | null;
 }
 
 /** An error message of one line, for a request that was refused. */
@@ -477,8 +670,47 @@ export interface Progress {
   done: number;
 }
 
+/** All snapshots of the recipe, the oldest first. */
+export interface Snapshots {
+  kind: "snapshots";
+  snapshots: Snapshot[];
+}
+
+/** A picture that is kept next to the recipe, such as ``snapshots/20260131-101530``: a PNG or JPEG file. */
+export interface Picture {
+  kind: "picture";
+  name: string;
+  data: Uint8Array;
+}
+
+/** All notes about the recipe, the oldest first. */
+export interface Notes {
+  kind: "notes";
+  notes: Note[];
+}
+
+/** All reference pictures, the oldest first. */
+export interface References {
+  kind: "references";
+  references: Reference[];
+}
+
+/** Kept looks by their bookmarks; ``0`` is the one with which the review opens. */
+export interface Views {
+  kind: "views";
+  views: Record<string, Shared>;
+}
+
+/** Cameras in the files of the scene. */
+export interface Cameras {
+  kind: "cameras";
+  cameras: StageCamera[];
+}
+
 export type FromPage =
   | Hello
+  | Introduce
+  | Point
   | Lead
   | Set
   | Arrange
@@ -501,7 +733,19 @@ export type FromPage =
   | Hand
   | Play
   | Against
-  | Watch;
+  | Watch
+  | TakeSnapshot
+  | EditSnapshot
+  | DeleteSnapshot
+  | WriteNote
+  | EditNote
+  | DeleteNote
+  | AddReference
+  | PlaceReference
+  | DeleteReference
+  | KeepView
+  | LoadSnapshot
+  | PickColor;
 
 export type FromServer =
   | Welcome
@@ -523,6 +767,13 @@ export type FromServer =
   | Saved
   | Notice
   | Followed
+  | Pointer
   | Trouble
   | Problems
-  | Progress;
+  | Progress
+  | Snapshots
+  | Picture
+  | Notes
+  | References
+  | Views
+  | Cameras;

@@ -36,6 +36,7 @@ COMMANDS = [
     "movie",
     "turntable",
     "view",
+    "serve",
     "validate",
     "schema",
     "doctor",

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import least_squares
 
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
@@ -132,6 +133,27 @@ def absorption_of(reflectance: ArrayLike, roughness: ArrayLike) -> NDArray[np.fl
 def display_color(reflectance: ArrayLike) -> NDArray[np.float64]:
     """Linear colour that dense hair has under white light, the reflection of surfaces included."""
     return SURFACE + (1.0 - SURFACE) * np.asarray(reflectance, np.float64)
+
+
+def pigments_of_color(color: ArrayLike, roughness: float) -> tuple[float, float, float]:
+    """Melanin and redness at which dense hair is nearest to a color: the inverse of ``display_color``.
+
+    color: linear red, green and blue, shape (3,), of hair under white light
+    roughness: azimuthal roughness of the fiber
+
+    Also returns the distance of what they give from the color. Differences are between cube roots of the channels,
+    which are even steps of lightness (CIE 1976).
+    """
+    wanted = np.cbrt(np.clip(np.asarray(color, np.float64), 0.0, 1.0))
+
+    def missing(pigments: NDArray[np.float64]) -> NDArray[np.float64]:
+        melanin, redness = pigments[..., 0], pigments[..., 1]
+        return np.cbrt(display_color(reflectance(absorption(melanin, redness), roughness))) - wanted
+
+    grid = np.stack(np.meshgrid(np.linspace(0.0, 0.999, 64), np.linspace(0.0, 1.0, 17), indexing="ij"), axis=-1)
+    first = grid.reshape(-1, 2)[np.argmin((missing(grid) ** 2).sum(axis=-1))]
+    found = least_squares(missing, first, bounds=([0.0, 0.0], [MOST_MELANIN, 1.0]), xtol=1e-12, ftol=1e-12, gtol=1e-12)
+    return float(found.x[0]), float(found.x[1]), float(np.linalg.norm(found.fun))
 
 
 def dyed(natural: ArrayLike, dye: ArrayLike, amount: ArrayLike) -> NDArray[np.float64]:

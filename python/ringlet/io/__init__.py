@@ -4,11 +4,12 @@ from ringlet.io.formats import format_of, open_scene, write_scene
 from ringlet.io.read import read_clip, read_curves, read_mesh, read_space
 from ringlet.io.texture import read_texture
 from ringlet.io.usd.cache import CacheFile, CacheWriter, cache_groom_path, is_cache, open_cache, read_cache, write_cache
-from ringlet.io.usd.camera import read_camera
+from ringlet.io.usd.camera import camera_paths, read_camera
 from ringlet.io.usd.check import problems
 from ringlet.io.usd.groom import as_written, is_groom, read_groom, write_groom
 from ringlet.io.usd.hairs import HairWriter, read_hair_frames, read_hairs, read_stage
 from ringlet.io.usd.head import head_path, write_head
+from ringlet.io.usd.host_meshes import PolygonMesh, write_polygon_meshes
 from ringlet.io.usd.mesh import Body, read_bodies, read_body, read_meshes, surface_paths, unread_surfaces
 from ringlet.io.usd.offsets import read_offsets, write_offsets
 from ringlet.io.usd.rest import read_rest, write_rest
@@ -20,8 +21,10 @@ __all__ = [
     "CacheFile",
     "CacheWriter",
     "HairWriter",
+    "PolygonMesh",
     "as_written",
     "cache_groom_path",
+    "camera_paths",
     "check_target",
     "format_of",
     "head_path",
@@ -55,6 +58,7 @@ __all__ = [
     "write_groom",
     "write_head",
     "write_offsets",
+    "write_polygon_meshes",
     "write_rest",
     "write_scene",
     "write_touches",

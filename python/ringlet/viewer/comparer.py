@@ -1,18 +1,23 @@
-"""A second groom for comparison, made on a worker thread."""
+"""Grooms for comparison, up to three, each made on a worker thread of its own."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
 
 from ringlet.data.errors import UserError
 from ringlet.data.regular import read_text
 from ringlet.groom import Recipe
 from ringlet.viewer import protocol
+from ringlet.viewer.compared_settings import settings_text
 from ringlet.viewer.display_groom import GroomEvaluator
 from ringlet.viewer.files import Files
 from ringlet.viewer.project import Project
+from ringlet.viewer.protocol import Side
 from ringlet.viewer.publisher import Publisher, SendQueue
+from ringlet.viewer.reviewing import Reviewing
 from ringlet.viewer.viewport import Viewport
 from ringlet.viewer.wire import pack, trouble
 from ringlet.viewer.worker import LatestTaskWorker, Stale, report_mistake
@@ -20,64 +25,94 @@ from ringlet.viewer.worker import LatestTaskWorker, Stale, report_mistake
 
 @dataclass(frozen=True)
 class Comparison:
-    """A request for a groom to compare with: a recipe, its muted stages, its name, and the page that asks."""
+    """A request for a groom to compare with: a recipe, its muted stages, its name, and the page that asks.
 
+    detail: author and time of a snapshot
+    """
+
+    side: Side
     recipe: Recipe
     muted: frozenset[str]
     name: str
+    detail: str
     page: SendQueue
 
 
 class Comparer:
-    """Makes the groom on side b of the viewport. Public methods run on the session's thread.
+    """Makes the grooms on the sides b, c and d of the viewport. Public methods run on the session's thread.
 
     call: runs a function on the session's thread
     """
 
     def __init__(self, project: Project, publisher: Publisher, call: Callable[..., None]) -> None:
         self._project, self._publisher, self._call = project, publisher, call
-        self._evaluator = GroomEvaluator(project)
-        self._worker = LatestTaskWorker[Comparison](self._groom, "compare")
+        self._workers: dict[Side, LatestTaskWorker[Comparison]] = {}
+        self._evaluators: dict[Side, GroomEvaluator] = {}
+        self._shown: dict[Side, Comparison] = {}
 
-    def open(self, files: Files, viewport: Viewport) -> None:
+    def open(self, files: Files, viewport: Viewport, review: Reviewing) -> None:
         """Compares with other files from now on."""
-        self._files, self._viewport = files, viewport
+        self._files, self._viewport, self._review = files, viewport, review
+        self._shown = {}
 
     def compare(self, message: protocol.Compare, page: SendQueue) -> None:
-        """Shows a groom for comparison as soon as it is made; raises UserError for a recipe that cannot be read."""
-        self._viewport.clear_beside()
-        self._worker.cancel()
+        """Shows a groom on a side as soon as it is made; raises UserError for a recipe that cannot be read."""
+        side = message.side
+        self._clear(side)
         if message.to == "none":
-            self._name("")
+            self._announce(protocol.Compared(side=side, name=""))
             return
+        asked = self._asked(message, page)
+        if side not in self._workers:
+            self._evaluators[side] = GroomEvaluator(self._project)
+            self._workers[side] = LatestTaskWorker[Comparison](self._groom, f"compare {side}")
+        self._workers[side].submit(asked)
+
+    def _asked(self, message: protocol.Compare, page: SendQueue) -> Comparison:
+        """The recipe that a message asks for; raises UserError when it cannot be read."""
         files, document = self._files, self._files.recipe
-        recipe, muted, name = document.model, files.without_effect, "as it was"
+        none = frozenset[str]()
         if message.to == "saved":
             recipe = files.parse(document.saved, document.path, document.saved_edits)
-            muted, name = frozenset[str](), "as saved"
-        elif message.to == "file":
+            return Comparison(message.side, recipe, none, "as saved", _written(document.path), page)
+        if message.to == "snapshot":
+            recipe, muted, name, detail = self._review.snapshot_to_compare(message.name)
+            return Comparison(message.side, recipe, muted, name, detail, page)
+        if message.to == "file":
             path = self._project.inside(message.name, "compare")
             recipe = files.parse(read_text(path, "choose a recipe of the project"), path)
-            muted, name = frozenset[str](), path.name
-        self._worker.submit(Comparison(recipe, muted, name, page))
+            return Comparison(message.side, recipe, none, path.name, "", page)
+        return Comparison(message.side, document.model, files.without_effect, "as it was", "", page)
+
+    def recompute(self) -> None:
+        """Publishes the settings of the open recipe again, after an edit."""
+        if self._shown:
+            document = self._files.recipe
+            now = protocol.Compared(
+                side="a", name="now", detail=document.path.name, settings=settings_text(document.model)
+            )
+            self._announce(now)
 
     def cancel(self) -> None:
-        """Cancels the groom that is being made."""
-        self._worker.cancel()
+        """Cancels the grooms that are being made."""
+        for worker in self._workers.values():
+            worker.cancel()
 
     def stop(self, patience: float) -> None:
-        """Stops the thread; waits for it up to ``patience`` [s]."""
-        self._worker.stop(patience)
+        """Stops the threads; waits for each up to ``patience`` [s]."""
+        for worker in self._workers.values():
+            worker.stop(patience)
 
     def _groom(self, asked: Comparison) -> None:
         """Grooms on the worker thread."""
+        worker = self._workers[asked.side]
         try:
-            display = self._evaluator.groom(
-                asked.recipe, asked.muted, draft=False, check_abort=self._worker.raise_if_stale
+            display = self._evaluators[asked.side].groom(
+                asked.recipe, asked.muted, draft=False, check_abort=worker.raise_if_stale
             )
-            self._worker.raise_if_stale()
-            self._call(self._name, asked.name)
-            self._call(self._viewport.show, display, "b")
+            worker.raise_if_stale()
+            self._call(self._show, asked)
+            self._call(self._viewport.show, display, asked.side)
         except UserError as error:
             asked.page.put("trouble", trouble(str(error)))
         except Stale:
@@ -85,5 +120,26 @@ class Comparer:
         except Exception as error:
             asked.page.put("trouble", trouble(report_mistake("a groom to compare with could not be made", error)))
 
-    def _name(self, name: str) -> None:
-        self._publisher.publish("b/none", pack(protocol.Compared(name=name)))
+    def _show(self, asked: Comparison) -> None:
+        self._shown[asked.side] = asked
+        self.recompute()
+        settings = settings_text(asked.recipe)
+        self._announce(protocol.Compared(side=asked.side, name=asked.name, detail=asked.detail, settings=settings))
+
+    def _clear(self, side: Side) -> None:
+        """Removes the groom on a side."""
+        self._viewport.clear_beside(side)
+        self._shown.pop(side, None)
+        if side in self._workers:
+            self._workers[side].cancel()
+
+    def _announce(self, message: protocol.Compared) -> None:
+        self._publisher.publish(f"{message.side}/none", pack(message))
+
+
+def _written(path: Path) -> str:
+    """When a file was written; empty for none."""
+    try:
+        return datetime.fromtimestamp(path.stat().st_mtime).isoformat(" ", "minutes")
+    except OSError:
+        return ""

@@ -85,10 +85,16 @@ class Document:
     """
 
     def __init__(
-        self, path: Path, check: Callable[[str, str], Any], edits: str = "", history: History | None = None
+        self,
+        path: Path,
+        check: Callable[[str, str], Any],
+        edits: str = "",
+        history: History | None = None,
+        text: str | None = None,
     ) -> None:
+        """Opens a file; ``text`` is in place of its own."""
         self.path, self.history = path, history or History()
-        self.saved, self.saved_edits = read_text(path), edits
+        self.saved, self.saved_edits = read_text(path) if text is None else text, edits
         self.theirs: tuple[str, str] | None = None
         self._check, self.revision = check, 0
         self.restore(State(self.saved, edits=edits))

@@ -150,7 +150,7 @@ class Files:
 
     # Changes
 
-    def set(self, file: File, changes: list[tuple[Place, Any]], gesture: int) -> None:
+    def set(self, file: File, changes: list[tuple[Place, Any]], gesture: int | None = None) -> None:
         """Sets values of settings; None removes a setting."""
         document = self.document(file)
         before = document.model

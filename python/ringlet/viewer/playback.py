@@ -180,7 +180,7 @@ class Playback:
             self._beside.open(self._files.project.inside(name, "against"), display, partial(stage.frame, "against"))
             self._against = name
             self._viewport.show(display, "b")
-        self._publisher.publish("b/none", pack(protocol.Compared(name=name)))
+        self._publisher.publish("b/none", pack(protocol.Compared(side="b", name=name)))
         self.publish_timeline()
 
     def publish_timeline(self) -> None:

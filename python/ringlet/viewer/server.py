@@ -108,7 +108,7 @@ async def _serve(socket: WebSocket, session: Session) -> None:
     if not isinstance(hello, protocol.Hello) or hello.version != protocol.VERSION:
         await socket.close(WRONG, f"expected hello of version {protocol.VERSION}; reload the page")
         return
-    page = await asyncio.wrap_future(session.submit(session.join, hello.client, hello.leads))
+    page = await asyncio.wrap_future(session.submit(session.join, hello.client, hello.leads, hello.person))
     sending = asyncio.create_task(_send(socket, page))
     try:
         await _receive(socket, session, page)

@@ -16,7 +16,7 @@ from typing import Any
 from ringlet import api
 from ringlet.data.errors import UserError
 from ringlet.data.pigment import HAIR_COLORS
-from ringlet.viewer import protocol
+from ringlet.viewer import eyedropper, protocol
 from ringlet.viewer.caches import Caches
 from ringlet.viewer.comparer import Comparer
 from ringlet.viewer.display_groom import DisplayGroom
@@ -25,13 +25,16 @@ from ringlet.viewer.files import Files, operator_names
 from ringlet.viewer.grooming import Grooming
 from ringlet.viewer.manipulator import LockManipulator
 from ringlet.viewer.playback import Playback
+from ringlet.viewer.presence import Presence
 from ringlet.viewer.problems import GROOM, RECOVERED, SAVE, ProblemList, conflict_fixes, dismiss
 from ringlet.viewer.project import Project
 from ringlet.viewer.protocol import File, Fix
 from ringlet.viewer.publisher import Publisher, SendQueue
 from ringlet.viewer.recovery import Recovery
+from ringlet.viewer.reviewing import Reviewing
 from ringlet.viewer.scene import read_scene
 from ringlet.viewer.sculpting import Sculptor
+from ringlet.viewer.stage_cameras import StageCameras
 from ringlet.viewer.viewport import Viewport
 from ringlet.viewer.watcher import FileWatcher
 from ringlet.viewer.wire import pack, trouble
@@ -70,7 +73,8 @@ class Session:
         self.publisher = Publisher()
         self.problems = ProblemList(self.publisher)
         self.pages: list[Page] = []
-        self._lock = EditLock(self.submit, self._handed_over)
+        self._presence = Presence()
+        self._lock = EditLock(self.submit, self._answered)
         self._heard = Counter[str]()
         self._thread = SerialWorker("session")
         self._watching: asyncio.Task[None] | None = None
@@ -78,6 +82,7 @@ class Session:
         self._rest = Timer(REST_AFTER, self.submit)
         self._caches = Caches(project)
         self._grooming = Grooming(project, self.publisher, self.problems, self._call, self._show, self.trouble)
+        self._review = Reviewing(project, self.publisher, self._notice)
         self._comparer = Comparer(project, self.publisher, self._call)
         self._load(file)
 
@@ -89,8 +94,10 @@ class Session:
         self._recovery = Recovery(files, self.problems)
         self._playback = Playback(files, self.publisher, viewport, self._call, self.trouble)
         self._manipulator, self._sculptor = LockManipulator(files), Sculptor(files)
+        self._cameras = StageCameras(self.publisher)
         self._grooming.open(files, viewport)
-        self._comparer.open(files, viewport)
+        self._review.open(files)
+        self._comparer.open(files, viewport, self._review)
         self._watcher.changed(files.watched())
         entry = self._recovery.recover()
         self.recovered = entry is not None
@@ -100,6 +107,7 @@ class Session:
         if scene is not None:
             bodies, display = scene
             viewport.stage(display, bodies)
+            self._cameras.show(display.groom, None)
             self._playback.read(display)
 
     # Pages
@@ -113,6 +121,7 @@ class Session:
         for file in self.files.documents:
             self.publisher.publish(f"document/{file}", self.files.message(file))
             self._show_conflict(file)
+        self._review.publish()
         if "recipe" in self.files.documents:
             self._grooming.request()
 
@@ -127,6 +136,8 @@ class Session:
                 if names != posted:
                     self._call(self.publisher.publish, "files", pack(protocol.Files(names=names)))
                 posted = names
+                if await asyncio.to_thread(self._review.watch):
+                    self._call(self._review.reload)
             looks += 1
             await asyncio.sleep(WATCH_INTERVAL)
 
@@ -164,12 +175,14 @@ class Session:
         """Runs a call on the session's thread, after those submitted before it."""
         return self._thread.submit(do, *arguments)
 
-    def join(self, name: str, leads: bool = False) -> Page:
+    def join(self, name: str, leads: bool = False, person: str = "") -> Page:
         """Adds a page. It gets the edit lock when it held it before, or when no connected page holds it.
 
-        leads: whether the page held it when it was connected last; it does not take it from a page that asked for it
+        leads:  whether the page held it when it was connected last; it does not take it from a page that asked for it
+        person: name of the person at the page; empty where it is not known
         """
         page = Page(name, self.publisher.subscribe(self._welcome(self._heard[name])))
+        self._presence.join(page, name, person)
         self._lock.join(name, self._connected, led=leads)
         self.pages.append(page)
         self._send_roles()
@@ -178,6 +191,7 @@ class Session:
     def leave(self, page: Page) -> None:
         """Removes a page; the edit lock stays reserved for it until another page requests it."""
         self.pages.remove(page)
+        self._presence.leave(page)
         self.publisher.unsubscribe(page.queue)
         if page.name == self._lock.leader:
             self._end_gesture()
@@ -208,26 +222,56 @@ class Session:
             )
         )
 
-    def _handed_over(self, over: bool) -> None:
-        if over:
+    def _answered(self, asked: str, before: str) -> None:
+        """The page that asked for the edit lock has it, or ``before`` keeps it."""
+        leader = self._lock.leader
+        if asked == leader:
             self._end_gesture()
+        if asked and leader != before:
+            self._notice(f"{self._called(leader)} can edit now")
+        elif asked != leader:
+            self._notice(f"{self._called(leader)} goes on editing", to=asked)
         self._send_roles()
 
-    def _share(self, page: Page, look: protocol.Look) -> None:
-        """Shares the look of the leading page with the others, and with those that join later."""
-        self.publisher.publish("followed", pack(protocol.Followed(**look.model_dump(exclude={"kind"}))))
-        page.queue.discard("followed")
+    def _called(self, name: str) -> str:
+        """Name of the person at a page."""
+        return next((self._presence[page].name for page in self.pages if page.name == name), "Another page")
+
+    def _present(self, page: Page, message: protocol.FromPage) -> None:
+        """Handles a message of presence; what a page shares that no longer leads is outdated."""
+        if isinstance(message, protocol.Introduce):
+            self._presence.rename(page, message.person)
+            self._presence[page].follows = message.follows
+            self._send_roles()
+        elif page.name != self._lock.leader:
+            return
+        elif isinstance(message, protocol.Look):  # also for those that join later
+            self.publisher.publish("followed", pack(protocol.Followed(**message.model_dump(exclude={"kind"}))))
+            page.queue.discard("followed")
+        elif isinstance(message, protocol.Point):
+            for other in self.pages:
+                if other is not page:
+                    other.queue.put("pointer", pack(protocol.Pointer(at=message.at)))
 
     def _send_roles(self) -> None:
-        others = len(self._connected) - 1
-        for page in self.pages:
-            role = protocol.Role.model_validate({"others": others, **self._lock.role(page.name)})
-            page.queue.put("role", pack(role))
+        people = [
+            protocol.Person(**vars(self._presence[page]), leads=page.name == self._lock.leader, you=False)
+            for page in self.pages
+        ]
+        for k, page in enumerate(self.pages):
+            mine = [person.model_copy(update={"you": k == other}) for other, person in enumerate(people)]
+            role = {"people": mine, **self._lock.role(page.name)}
+            if role["asked"]:
+                role["asking"] = self._called(self._lock.asking)
+            page.queue.put("role", pack(protocol.Role.model_validate(role)))
 
     # Messages
 
     def handle(self, page: Page, message: protocol.FromPage) -> None:
         """Handles a message of a page and acknowledges it; raises UserError for a request that fails."""
+        if isinstance(message, protocol.PRESENCE):
+            self._present(page, message)
+            return
         try:
             self._dispatch(page, message)
         finally:
@@ -243,12 +287,14 @@ class Session:
         if isinstance(message, protocol.Watch):
             page.queue.request(self._playback.frame_sources(message))
             return
+        if isinstance(message, protocol.AnyReview):
+            self._review.handle(message)
+            return
         if page.name != self._lock.leader:
             raise UserError("another page leads this session; take the lead to edit")
         files = self.files
-        if isinstance(message, protocol.Look):
-            self._share(page, message)
-        elif isinstance(message, protocol.Hand):
+        self._lock.keep()
+        if isinstance(message, protocol.Hand):
             self._lock.answer(over=message.over)
         elif isinstance(message, protocol.Set):
             files.set(message.file, message.changes, message.gesture)
@@ -283,6 +329,12 @@ class Session:
             if not self.recovered:
                 files.recover(message.file, message.text, message.edits, message.saved, message.saved_edits)
                 self._edited(message.file)
+        elif isinstance(message, protocol.LoadSnapshot):
+            self._review.load_snapshot(message.id)
+            self._edited("recipe")
+        elif isinstance(message, protocol.PickColor):
+            self._notice(eyedropper.pick(files, message.color))
+            self._edited("recipe")
         elif isinstance(message, protocol.Compare):
             self._comparer.compare(message, page.queue)
         elif isinstance(message, protocol.Isolate):
@@ -422,9 +474,11 @@ class Session:
         differences = self.files.differences(file)
         self.problems.show(f"conflict/{file}", message, conflict_fixes(file), place=(file, ""), differences=differences)
 
-    def _notice(self, message: str) -> None:
+    def _notice(self, message: str, to: str = "") -> None:
+        """Shows a short message on the page of a name, or on all pages."""
         for page in self.pages:
-            page.queue.put("notice", pack(protocol.Notice(message=message)))
+            if to in ("", page.name):
+                page.queue.put("notice", pack(protocol.Notice(message=message)))
 
     # Grooming
 
@@ -437,6 +491,7 @@ class Session:
         self.publisher.publish(f"document/{file}", self.files.message(file))
         if file == "recipe":
             self._grooming.request(draft=not resting)
+            self._comparer.recompute()
         else:
             self._playback.publish_timeline()
         if resting:
@@ -463,6 +518,7 @@ class Session:
     def _show(self, display: DisplayGroom, revision: int) -> None:
         before = self._viewport.display
         self._viewport.show(display, "a", revision)
+        self._cameras.show(display.groom, self.files.shot if self.files.mode == "shot" else None)
         guides_changed = before is None or before.groom.guides is not display.groom.guides
         if guides_changed and display.groom.unsculpted is not None and not self._sculptor.busy:
             self.publisher.publish("guides", self._sculptor.message(display.groom.guides, display.groom))

@@ -31,7 +31,7 @@ def variant(document: Document, parse: Callable[[str, Path, str], Recipe], path:
     text = ""
     try:
         text = _text(document, edits)
-        equal = _settings(parse(text, path, document.state.edits)) == _settings(document.model)
+        equal = settings_of(parse(text, path, document.state.edits)) == settings_of(document.model)
     except UserError:
         equal = False
     if not equal:
@@ -136,6 +136,6 @@ def _inheritable(data: Tables) -> Tables:
     return {name: value for name, value in data.items() if name not in OWN}
 
 
-def _settings(recipe: BaseModel) -> Tables:
+def settings_of(recipe: BaseModel) -> Tables:
     """Settings of a recipe, without the keys that a variant does not inherit."""
     return recipe.model_dump(mode="json", exclude=set(OWN))

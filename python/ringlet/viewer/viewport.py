@@ -18,7 +18,7 @@ from ringlet.viewer.wire import pack
 
 
 class Viewport:
-    """The displayed grooms on sides a and b.
+    """The displayed grooms: that of the open recipe on side a, and those that it is compared with.
 
     display: groom on side a
     """
@@ -69,11 +69,11 @@ class Viewport:
             self._publish_bodies(shot_meshes(shot, groom))
             self._shot_inputs = inputs
 
-    def clear_beside(self) -> None:
-        """Removes the groom on side b."""
-        self._publisher.clear("b/")
-        self._layouts.pop("b", None)
-        self._colors.pop("b", None)
+    def clear_beside(self, side: str = "b") -> None:
+        """Removes the groom on a side."""
+        self._publisher.clear(f"{side}/")
+        self._layouts.pop(side, None)
+        self._colors.pop(side, None)
 
     def _show_scalp(self, display: DisplayGroom) -> None:
         if self._scalp is not display.groom.scalp:

@@ -8,17 +8,19 @@ namespace ringlet {
 void ContactStiffness::begin_step(std::vector<double> largest, double dt) {
     for (double &load : load_) load *= std::exp2(-dt / contact_settings::load_half_life);
     largest_ = std::move(largest);
+    carried_ = load_;
 }
 
-bool ContactStiffness::raise_loads(const ContactSet &contacts) {
+bool ContactStiffness::update_loads(const ContactSet &contacts) {
     const std::vector<Contact> &all = contacts.contacts();
-    bool raised = false;
+    const std::vector<double> before = load_;
+    load_ = carried_;
     for (size_t k = 0; k < all.size(); ++k)
         for (const int v : all[k].vertex) {
             const double force = contacts.lagged_forces()[k].force / all[k].loaded_fraction;
-            if (force > load_[v]) load_[v] = force, raised = true;
+            load_[v] = std::max(load_[v], force);
         }
-    return raised;
+    return load_ != before;
 }
 
 std::vector<double> ContactStiffness::levels(const CollisionMesh &mesh) const {

@@ -19,8 +19,9 @@ public:
     // slowly: hair that rests on hair must not become soft, sink in and become stiff again.
     void begin_step(std::vector<double> largest, double dt);
 
-    // Raises loads to the lagged normal forces of the contacts; returns whether one has risen. None falls within a step.
-    bool raise_loads(const ContactSet &contacts);
+    // Loads become the lagged normal forces of the contacts, where those are larger than what the step began with; returns
+    // whether one has changed. A force that only an early iterate had leaves no trace in the solution.
+    bool update_loads(const ContactSet &contacts);
 
     const std::vector<double> &largest() const { return largest_; }
 
@@ -30,7 +31,7 @@ public:
     void recall(std::vector<double> loads) { load_ = std::move(loads); }
 
 private:
-    std::vector<double> largest_, load_;
+    std::vector<double> largest_, carried_, load_;
 };
 
 } // namespace ringlet

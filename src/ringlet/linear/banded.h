@@ -5,6 +5,7 @@
 #include "ringlet/linear/band_layout.h"
 #include "ringlet/math/pack.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace ringlet::RINGLET_SIMD {
@@ -50,31 +51,21 @@ public:
     // Factors in place: A = L D Lᵀ; entry(c)[0] becomes 1/D, the rest L. The columns below a block are updated once for all
     // columns of the block.
     void factor() {
-        for (int first = 0; first < columns_; first += block) {
-            T *from = entry(first);
-            T scaled[block][band];
-            each([&](auto c) {
-                constexpr int count = rows(c);
-                T *pivot = from + layout.begin(c);
-                const T inverse = 1.0 / pivot[0];
-                scaled[c][0] = inverse;
-                for (int k = 1; k < count; ++k) scaled[c][k] = inverse * pivot[k];
-                for (int k = 1; k < block - c; ++k) {
-                    T *column = from + layout.begin(c + k);
-                    for (int r = k; r < count; ++r) column[r - k] -= scaled[c][k] * pivot[r];
-                }
-            });
-            for (int k = block; k < band; ++k) {
-                T *column = from + layout.begin(k);
-                for (int r = k; r < band; ++r) {
-                    T sum = column[r - k];
-                    each([&](auto c) { sum -= scaled[c][k - c] * from[layout.begin(c) + r - c]; });
-                    column[r - k] = sum;
-                }
-            }
-            each([&](auto c) {
-                for (int k = 0; k < rows(c); ++k) from[layout.begin(c) + k] = scaled[c][k];
-            });
+        for (int first = 0; first < columns_; first += block) eliminate(entry(first));
+    }
+
+    // 1 in lanes where A is positive definite, else 0. Before factor().
+    T is_definite() const {
+        constexpr int count = entries(block), step = int(layout.begin(block)); // of the columns that one block's affect
+        T window[count], definite{};
+        definite += 1.0;
+        std::copy_n(entries_, count, window);
+        for (int first = 0;; first += block) {
+            eliminate(window);
+            each([&](auto c) { definite = select(window[layout.begin(c)] > 0.0, definite, T{}); });
+            if (first + block >= columns_) return definite;
+            std::copy(window + step, window + count, window);
+            std::copy_n(entries_ + layout.begin(first + block) + (count - step), step, window + (count - step));
         }
     }
 
@@ -109,6 +100,33 @@ public:
     }
 
 private:
+    // Eliminates the columns of the block that begins at `from`.
+    static void eliminate(T *from) {
+        T scaled[block][band];
+        each([&](auto c) {
+            constexpr int count = rows(c);
+            T *pivot = from + layout.begin(c);
+            const T inverse = 1.0 / pivot[0];
+            scaled[c][0] = inverse;
+            for (int k = 1; k < count; ++k) scaled[c][k] = inverse * pivot[k];
+            for (int k = 1; k < block - c; ++k) {
+                T *column = from + layout.begin(c + k);
+                for (int r = k; r < count; ++r) column[r - k] -= scaled[c][k] * pivot[r];
+            }
+        });
+        for (int k = block; k < band; ++k) {
+            T *column = from + layout.begin(k);
+            for (int r = k; r < band; ++r) {
+                T sum = column[r - k];
+                each([&](auto c) { sum -= scaled[c][k - c] * from[layout.begin(c) + r - c]; });
+                column[r - k] = sum;
+            }
+        }
+        each([&](auto c) {
+            for (int k = 0; k < rows(c); ++k) from[layout.begin(c) + k] = scaled[c][k];
+        });
+    }
+
     // Calls work(0), work(1) … for the columns of a block, as constants.
     template <class Work> static void each(const Work &work) {
         [&]<int... c>(std::integer_sequence<int, c...>) {

@@ -25,7 +25,7 @@ void find_initial_contacts(SceneData &scene, double dt) {
     const std::vector<ContactPair> touching = scene.configuration.pairs.contact_pairs(now);
     contacts.begin(scene.vertices.mesh, scene.vertices.material, touching, scene.initial_forces, now);
     contacts.find(scene.vertices.mesh, scene.vertices.material, touching, now, now);
-    scene.stiffness.raise_loads(contacts);
+    scene.stiffness.update_loads(contacts);
     scene.initial_forces.clear();
     scene.begun = true;
 }

@@ -3,6 +3,7 @@
 // nothing of a direction that rotates edges.
 #pragma once
 
+#include "ringlet/energy/strand/frame.h"
 #include "ringlet/strand/settings.h"
 #include "ringlet/strand/vertex_data.h"
 
@@ -31,27 +32,62 @@ void close_path(const StrandRow<T> *rows, int held_at, const MaskOf<T> &held, T 
     }
 }
 
+// An edge and the angle of its frame, as a value of γ l̄ [m], at the end of a path.
+template <class T> struct RotatedEdge {
+    Vec<T> edge;
+    T frame;
+};
+
+// A change of the edge and of its frame, as the rotation that it is to first order, applied to both: what rotates rigidly to
+// first order does so exactly. The angle is atan ‖ω‖, as that of a straight path, since directions of radians overshoot. The
+// edge keeps its length; where nothing changes the result is the same to the bit.
+template <int dofs, class T>
+RotatedEdge<T> rotate_edge(const StrandRow<T> &row, Vec<T> edge, T length, Vec<T> change, T frame, T frame_change) {
+    const Vec<T> t = (1.0 / length) * edge, sideways = (1.0 / length) * (change - dot(t, change) * t); // ω × t
+    T about{};                                                                                         // ω · t
+    if constexpr (dofs == 4)
+        about = row.frame_free * (frame_change / row.rest_length + dot(spin(row.reference.tangent, t, length), change));
+    const Vec<T> omega = cross(t, sideways) + about * t;
+    const T cosine = 1.0 / sqrt(1.0 + dot(omega, omega)), twice = cosine * cosine / (1.0 + cosine);
+    const auto rotate = [&](Vec<T> v) { return v + cosine * cross(omega, v) + twice * cross(omega, cross(omega, v)); };
+    RotatedEdge<T> to{rotate(edge), frame + frame_change};
+    if constexpr (dofs == 4) {
+        const auto reference = [&](Vec<T> tangent) { return transport(row.reference.normal, row.reference.tangent, tangent); };
+        const Vec<T> before = reference(t), tangent = rotate(t), after = reference(tangent);
+        const SineCosine<T> turn = sine_cosine(frame / row.rest_length);
+        const Vec<T> director = rotate(turn.cosine * before + turn.sine * cross(t, before));
+        const T rotated = atan2(dot(cross(tangent, after), director), dot(after, director));
+        const T correction = row.rest_length * wrap(rotated - to.frame / row.rest_length);
+        to.frame += select((cosine == 1.0) | (row.frame_free == 0.0), T{}, correction);
+    }
+    return to;
+}
+
 // The point `to` of the path from x at the fraction `step` of a direction; x + step · direction to first order.
-// An edge points where its ends lead it on straight paths. Its length changes by the direction's first-order change alone,
-// and the vertices behind shift with its end.
+// Edges rotate. Their lengths change by the direction's first-order change alone, and the vertices behind shift with their
+// ends.
 template <int dofs, class T>
 void curved_path(int vertices, const StrandRow<T> *rows, const T *x, T step, const T *direction, T *to) {
     Vec<T> last{}, shift{}; // the vertex before on its straight path; of the vertices behind, from theirs
     T length{};             // at rest, since the last held vertex
     for (int i = 0; i < vertices; ++i) {
         const Vec<T> straight = position<dofs>(x, i) + step * position<dofs>(direction, i);
+        for (int k = 3; k < dofs; ++k) to[dofs * i + k] = x[dofs * i + k] + step * direction[dofs * i + k];
         if (i > 0) {
-            const Vec<T> edge = position<dofs>(x, i) - position<dofs>(x, i - 1), rotated = straight - last;
-            const T now = norm(edge), then = norm(rotated);
-            const auto point = (now < strand_settings::zero_length) | (then < strand_settings::zero_length);
-            const T wanted = max(now + dot(edge, rotated - edge) / select(point, constant<T>(1.0), now),
-                                 strand_settings::min_edge_ratio * now);
-            shift = shift + (select(point, constant<T>(1.0), wanted / select(point, constant<T>(1.0), then)) - 1.0) * rotated;
+            const int frame = dofs * i - 1; // γ l̄ of the edge, where there is one
+            const Vec<T> edge = position<dofs>(x, i) - position<dofs>(x, i - 1), change = (straight - last) - edge;
+            const T now = norm(edge);
+            const auto point = now < strand_settings::zero_length;
+            const T divisor = select(point, constant<T>(1.0), now);
+            const T ratio = max((now + dot(edge, change) / divisor) / divisor, constant<T>(strand_settings::min_edge_ratio));
+            const RotatedEdge<T> rotated =
+                rotate_edge<dofs>(rows[i - 1], edge, divisor, change, x[frame], to[frame] - x[frame]);
+            shift = shift + select<T>(point, Vec<T>{}, ratio * rotated.edge - (edge + change));
+            if constexpr (dofs == 4) to[frame] = select(point, to[frame], rotated.frame);
             length += rows[i - 1].rest_length;
         }
         last = straight;
         put(to + dofs * i, straight + shift);
-        for (int k = 3; k < dofs; ++k) to[dofs * i + k] = x[dofs * i + k] + step * direction[dofs * i + k];
         const auto held = rows[i].free == 0.0;
         if (any(held)) {
             close_path<dofs>(rows, i, held, length, shift, to);

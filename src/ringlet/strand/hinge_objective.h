@@ -62,6 +62,8 @@ public:
         this->clear_held(gradient);
     }
 
+    void add_path_curvature(T, Matrix &) const {}
+
     Strains<T> strains(int i) const {
         const StrandShape<T> &s = shapes_[i];
         return {{s.length, s.sigma * s.corner.angle, T{}, s.strain}};

@@ -17,6 +17,7 @@ template <class T, int dofs_, int band> class StrandObjective {
 public:
     static constexpr int dofs = dofs_;
     static constexpr bool has_frames = dofs == 4;
+    static constexpr bool has_path_curvature = has_frames;
     using Matrix = Banded<T, dofs, band>;
 
     StrandObjective(int vertices, StrandRow<T> *rows, StrandShape<T> *shapes, Safeguards safeguards = {})

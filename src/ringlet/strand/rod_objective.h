@@ -6,6 +6,7 @@
 
 #include "ringlet/energy/strand/frame.h"
 #include "ringlet/strand/objective.h"
+#include "ringlet/strand/path_curvature.h"
 
 namespace ringlet::RINGLET_SIMD {
 
@@ -41,6 +42,11 @@ public:
         }
         this->clear_held(gradient);
         for (int i = 0; i < vertices_; ++i) gradient[4 * i + 3] *= rows_[i].frame_free;
+    }
+
+    // Adds the curvature of paths to the matrix as assembled, times `weight`. The sum may be indefinite.
+    void add_path_curvature(T weight, Matrix &hessian) const {
+        PathCurvature<T, Matrix>(vertices_, rows_, shapes_, this->positions_).add_to(hessian, weight);
     }
 
     Strains<T> strains(int i) const {

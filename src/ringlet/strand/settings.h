@@ -19,7 +19,7 @@ inline constexpr double refined_strain = 0.03;  // of an edge: limited strands t
 inline constexpr double settled_fraction = 0.2; // of the mean edge: a move that short has settled
 
 // Material frames
-inline constexpr double frame_stiffness = 1e-9;      // regularises a free frame, by its bend stiffness over l̄²
+inline constexpr double frame_stiffness = 1e-8;      // regularises a free frame, by its bend stiffness over l̄²
 inline constexpr double frame_stiffness_min = 1e-15; // and by this much [N/m]
 inline constexpr int frame_iterations = 100;         // Newton iterations that relax the frames of strands at rest, at most
 inline constexpr double frame_tolerance = 1e-14;     // of that relaxation [m]

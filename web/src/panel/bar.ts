@@ -2,8 +2,8 @@
 
 import { h, iconButton } from "../dom";
 import type { File, Model } from "../model";
+import { choices, compareWith } from "./compare";
 import { openFile, saveAs, showChanges } from "./files";
-import type { Look } from "./look";
 import { bindKey, command, showKeys } from "./keys";
 
 export class Bar {
@@ -18,21 +18,17 @@ export class Bar {
   private readonly save = h("button", { type: "button", class: "primary", title: "Save (Ctrl+S)" }, "Save");
   private readonly as = h("button", { type: "button", class: "quiet" }, "Save as…");
   private readonly open = iconButton("folder", "Open another file (Ctrl+O)", () => openFile(this.model));
-  private readonly role = h("span", { class: "role" });
-  private readonly lead = h("button", { type: "button", class: "quiet" }, "Ask to edit");
-  private readonly follow = h("button", { type: "button", class: "quiet" }, "Follow");
   private readonly beside = h("select", { "aria-label": "Show another look beside this one", class: "beside" });
 
   constructor(
     private readonly model: Model,
     setTheme: () => void,
-    private readonly look: () => Look,
+    people: HTMLElement,
+    private readonly endComparison: () => void,
   ) {
     this.name.addEventListener("click", () => showChanges(model));
     this.save.addEventListener("click", () => this.saveAll());
     this.as.addEventListener("click", () => saveAs(model, this.file));
-    this.lead.addEventListener("click", () => model.say({ kind: "lead" }));
-    this.follow.addEventListener("click", () => this.look().setFollows(!this.look().follows));
     this.beside.addEventListener("change", () => this.compare());
     this.element.append(
       h("span", { class: "brand" }, "Ringlet"),
@@ -42,13 +38,11 @@ export class Bar {
       h("span", { class: "group" }, this.save, this.as),
       this.beside,
       h("span", { class: "space" }),
-      this.role,
-      this.follow,
-      this.lead,
+      people,
       iconButton("keys", "Keys (?)", showKeys),
       iconButton("sun", "Dark or light", setTheme),
     );
-    for (const topic of ["document", "role", "welcome", "files", "compared"] as const) model.on(topic, () => this.update());
+    for (const topic of ["document", "role", "welcome", "files", "compared", "snapshots"] as const) model.on(topic, () => this.update());
     bindKey({ keys: "Ctrl+Z", does: "undo", on: command("z"), run: () => model.say({ kind: "undo" }) });
     const redo = (event: KeyboardEvent) => command("z", true)(event) || command("y")(event);
     bindKey({ keys: "Ctrl+Shift+Z", does: "redo", on: redo, run: () => model.say({ kind: "redo" }) });
@@ -67,12 +61,14 @@ export class Bar {
   }
 
   private compare(): void {
-    const [to, name] = this.beside.value.split(":");
-    this.model.say({ kind: "compare", to: (to || "none") as "now" | "saved" | "file" | "none", name: name ?? "" });
+    const { value } = this.beside;
+    this.beside.value = "";
+    if (value === "end") this.endComparison();
+    else if (value) compareWith(this.model, value);
   }
 
   private update(): void {
-    const { documents, role, welcome, compared } = this.model;
+    const { documents, role, welcome } = this.model;
     const open = Object.values(documents);
     const dirty = open.some((document) => document.dirty);
     this.name.textContent = `${documents.recipe?.name ?? welcome?.name ?? ""}${dirty ? " ·" : ""}`;
@@ -84,26 +80,12 @@ export class Bar {
     for (const part of [this.undo, this.redo, this.save, this.as, this.beside])
       part.toggleAttribute("hidden", !open.length);
     this.as.toggleAttribute("disabled", !role.leads);
-    this.lead.toggleAttribute("hidden", role.leads);
-    this.lead.toggleAttribute("disabled", role.asks);
-    this.lead.textContent = role.asks ? "Asked to edit …" : "Ask to edit";
-    this.follow.toggleAttribute("hidden", role.leads);
-    if (!role.leads) this.follow.setAttribute("aria-pressed", String(this.look().follows));
-    this.follow.textContent = !role.leads && this.look().follows ? "Following" : "Follow";
     this.open.toggleAttribute("disabled", !role.leads);
-    const viewers = role.others > 0 ? `${role.others} ${role.others > 1 ? "viewers" : "viewer"}` : "";
-    this.role.textContent = role.leads ? viewers : "";
-    const files = this.model.files.filter((name) => name.endsWith(".toml") && name !== documents.recipe?.name);
-    const choices: [string, string][] = [
-      ["", "Compare with …"],
-      ["now", "this moment"],
-      ["saved", "as saved"],
-      ...files.map((name): [string, string] => [`file:${name}`, name]),
-    ];
-    if (compared) choices[0][1] = "End the comparison";
-    const { value } = this.beside;
-    this.beside.replaceChildren(...choices.map(([key, label]) => h("option", { value: key }, label)));
-    this.beside.value = compared ? value : "";
+    this.beside.replaceChildren(
+      h("option", { value: "" }, "Compare with …"),
+      ...(this.model.others.length ? [h("option", { value: "end" }, "End the comparison")] : []),
+      ...choices(this.model),
+    );
     this.beside.toggleAttribute("disabled", !role.leads);
   }
 }

@@ -1,16 +1,57 @@
-// Two looks: side by side, with a wipe between them, or one in place of the other; each with its label.
+// Up to four looks: next to one another, with a wipe, one in place of the other, or their difference. Each has its
+// label, and the settings in which they differ are listed.
 
 import { h, iconButton } from "../dom";
 import type { Model } from "../model";
-import type { Arrangement, Viewer } from "../view/viewer";
+import { type Arrangement, MOST_LOOKS, type Side } from "../view/looks";
+import type { Viewer } from "../view/viewer";
+import "./compare.css";
 import { bindKey } from "./keys";
 
-const MODES: Record<Arrangement, string> = { split: "side by side", wipe: "wipe", flip: "flip (Tab)" };
+const MODES: Record<Arrangement, string> = {
+  split: "side by side",
+  wipe: "wipe",
+  flip: "flip (Tab)",
+  difference: "difference",
+};
+const LEGEND = "orange: brighter in the first; blue: brighter in the second";
+
+/** What a look can be compared with, as options; their values are for `compareWith`. */
+export function choices(model: Model): HTMLElement[] {
+  const option = (value: string, label: string) => h("option", { value }, label);
+  const recipe = model.documents.recipe?.name;
+  const files = model.files.filter((name) => name.endsWith(".recipe.toml") && name !== recipe);
+  const snapshots = [...model.snapshots].reverse().map((one) => option(`snapshot:${one.id}`, snapshotLabel(one)));
+  return [
+    option("now", "this moment"),
+    option("saved", "as saved"),
+    ...(snapshots.length ? [h("optgroup", { label: "Snapshots" }, ...snapshots)] : []),
+    ...(files.length ? [h("optgroup", { label: "Recipes" }, ...files.map((name) => option(`file:${name}`, name)))] : []),
+  ];
+}
+
+/** First line of the note, the author and the time of a snapshot. */
+export function snapshotLabel({ note, author, time }: { note: string; author: string; time: string }): string {
+  return [note.trim().split("\n")[0], author, time.replace("T", " ").slice(0, 16)].filter(Boolean).join(" · ");
+}
+
+/** Compares with another look, next to those that are there. */
+export function compareWith(model: Model, choice: string): void {
+  const [to, ...name] = choice.split(":");
+  const sides = (["b", "c", "d"] as const).slice(0, MOST_LOOKS - 1);
+  const side = sides.find((one) => !model.compared[one]) ?? sides[sides.length - 1];
+  model.say({ kind: "compare", to: to as "now" | "saved" | "snapshot" | "file", name: name.join(":"), side });
+}
 
 export class CompareBar {
   readonly element = h("section", { class: "compare", hidden: true, "aria-label": "Comparison" });
   private readonly mode = h("select", { "aria-label": "Arrangement of the two looks" });
-  private readonly labels = { a: h("span", { class: "look-label a" }), b: h("span", { class: "look-label b" }) };
+  private readonly more = h("select", { "aria-label": "Compare with one more look" });
+  private readonly swapped = iconButton("swap", "Swap the two sides", () => this.swap());
+  private readonly changes = h("button", { type: "button", class: "quiet", "aria-expanded": "false" }, "Changes");
+  private readonly list = h("div", { class: "compare-changes scrolls", hidden: true, tabindex: 0, role: "region", "aria-label": "Settings that differ" });
+  private readonly legend = h("p", { class: "compare-legend", hidden: true }, LEGEND);
+  private readonly labels = h("div", { class: "look-labels" });
   private readonly divider = h("div", {
     class: "divider",
     role: "slider",
@@ -27,16 +68,28 @@ export class CompareBar {
   ) {
     for (const [name, label] of Object.entries(MODES)) this.mode.append(h("option", { value: name }, label));
     this.mode.addEventListener("change", () => this.arrange(this.mode.value as Arrangement));
+    this.more.addEventListener("change", () => {
+      if (this.more.value === "a") this.viewer.compare("a", true);
+      else compareWith(model, this.more.value);
+      this.update();
+    });
+    this.changes.addEventListener("click", () => {
+      this.list.hidden = !this.list.hidden;
+      this.changes.setAttribute("aria-expanded", String(!this.list.hidden));
+    });
     const bar = h(
       "div",
       { class: "compare-bar" },
       this.mode,
-      iconButton("swap", "Swap the two sides", () => this.swap()),
+      this.more,
+      this.swapped,
+      this.changes,
       h("button", { type: "button", class: "quiet", onclick: () => this.end() }, "End"),
     );
-    this.element.append(this.divider, this.labels.a, this.labels.b, bar);
-    model.on("compared", () => this.update());
-    bindKey({ keys: "Tab", does: "flip between two looks that are compared", on: (event) => this.flips(event), run: () => this.flip() });
+    this.element.append(this.divider, this.labels, bar, this.legend, this.list);
+    for (const topic of ["compared", "snapshots", "files", "role"] as const) model.on(topic, () => this.update());
+    addEventListener("resize", () => this.update());
+    bindKey({ keys: "Tab", does: "flip between the looks that are compared", on: (event) => this.flips(event), run: () => this.flip() });
     let held = false;
     this.divider.addEventListener("pointerdown", (event) => {
       held = true;
@@ -48,52 +101,123 @@ export class CompareBar {
       const by = { ArrowLeft: -0.02, ArrowRight: 0.02 }[event.key];
       if (!by) return;
       event.preventDefault();
-      this.wipe(this.viewer.wipe + by);
+      this.wipe(this.viewer.looks.wipe + by);
     });
   }
 
   private flips(event: KeyboardEvent): boolean {
-    return event.key === "Tab" && this.model.compared !== "" && this.viewer.arrangement === "flip" && !event.shiftKey;
+    const { looks } = this.viewer;
+    return event.key === "Tab" && looks.several && looks.arrangement === "flip" && !event.shiftKey;
   }
 
   private flip(): void {
-    this.viewer.front = this.viewer.front === "a" ? "b" : "a";
-    this.viewer.invalidate();
-    this.update();
+    this.viewer.looks.flip();
+    this.redraw();
   }
 
   private swap(): void {
-    this.viewer.first = this.viewer.first === "a" ? "b" : "a";
-    if (this.viewer.arrangement === "flip") this.flip();
-    this.viewer.invalidate();
-    this.update();
+    this.viewer.looks.swap();
+    if (this.viewer.looks.arrangement === "flip") this.viewer.looks.flip();
+    this.redraw();
   }
 
   private arrange(mode: Arrangement): void {
-    this.viewer.arrangement = mode;
-    this.viewer.invalidate();
-    this.update();
+    const { looks } = this.viewer;
+    looks.arrangement = mode;
+    looks.front = looks.order[0];
+    this.redraw();
   }
 
   private wipe(at: number): void {
-    this.viewer.wipe = Math.min(0.97, Math.max(0.03, at));
+    this.viewer.looks.wipe = Math.min(0.97, Math.max(0.03, at));
+    this.redraw();
+  }
+
+  /** Takes a look out of the comparison. */
+  private remove(side: Side): void {
+    if (side === "a") this.viewer.compare("a", false);
+    else if (this.model.timeline?.against) this.end();
+    else this.model.say({ kind: "compare", to: "none", side });
+    this.update();
+  }
+
+  private redraw(): void {
     this.viewer.invalidate();
     this.update();
   }
 
   private update(): void {
-    const { viewer, labels } = this;
-    const { compared } = this.model;
-    this.element.hidden = !compared;
-    const names = { a: "now", b: compared };
-    const [left, right] = viewer.first === "a" ? (["a", "b"] as const) : (["b", "a"] as const);
-    const one = viewer.arrangement === "flip";
-    labels.a.textContent = one ? names[viewer.front] : names[left];
-    labels.b.textContent = names[right];
-    labels.b.hidden = one;
-    this.element.dataset["mode"] = viewer.arrangement;
-    this.divider.hidden = viewer.arrangement !== "wipe";
-    this.divider.style.left = `${100 * viewer.wipe}%`;
-    this.divider.setAttribute("aria-valuenow", String(Math.round(100 * viewer.wipe)));
+    const { model, viewer, divider } = this;
+    const { looks } = viewer;
+    const several = looks.several && model.others.length > 0;
+    this.element.hidden = !several;
+    if (!several) return;
+    const { leads } = model.role;
+    const add = looks.order.includes("a") ? [] : [h("option", { value: "a" }, "the open recipe")];
+    this.more.replaceChildren(h("option", { value: "", selected: true }, "Add …"), ...add, ...choices(model));
+    this.more.value = "";
+    this.more.disabled = !leads || (looks.order.length >= MOST_LOOKS && !add.length);
+    this.mode.value = looks.arrangement;
+    this.element.dataset["mode"] = looks.arrangement;
+    this.legend.hidden = !looks.difference;
+    divider.hidden = looks.arrangement !== "wipe";
+    divider.style.left = `${100 * looks.wipe}%`;
+    divider.setAttribute("aria-valuenow", String(Math.round(100 * looks.wipe)));
+    this.labels.replaceChildren(...this.placed().map(([side, left, top, shift]) => this.label(side, left, top, shift)));
+    this.list.replaceChildren(this.differences());
+  }
+
+  /** Where the labels of the looks are: their left and top [pixels], and their shift as a part of their width. */
+  private placed(): [Side, number, number, number][] {
+    const { looks, element, covered } = this.viewer;
+    const { clientWidth, clientHeight } = element;
+    const bar = this.element.offsetTop;
+    const cells = looks.cells(clientWidth, clientHeight, covered());
+    if (looks.split)
+      return cells.map(({ side, clear }) => [side, clear.x + clear.width / 2, Math.max(62, clear.y + 8 - bar), -50]);
+    const at = looks.arrangement === "wipe" ? looks.wipe * clientWidth : clientWidth / 2;
+    if (looks.arrangement === "flip") return [[looks.front, at, 62, -50]];
+    const [first, second] = looks.order;
+    return [
+      [first, at - 16, 62, -100],
+      [second, at + 16, 62, 0],
+    ];
+  }
+
+  private label(side: Side, left: number, top: number, shift: number): HTMLElement {
+    const { name, detail } = this.named(side);
+    const remove = iconButton("close", `Take ‘${name}’ out`, () => this.remove(side), {
+      disabled: this.viewer.looks.order.length < 3 || (side !== "a" && !this.model.role.leads),
+      hidden: this.viewer.looks.order.length < 3,
+    });
+    const style = `left: ${left}px; top: ${top}px; transform: translateX(${shift}%)`;
+    return h("div", { class: "look-label", style, "data-side": side }, h("b", {}, name), detail ? h("span", {}, detail) : null, remove);
+  }
+
+  private named(side: Side): { name: string; detail: string } {
+    const look = this.model.compared[side];
+    return { name: side === "a" ? "now" : (look?.name ?? ""), detail: side === "a" ? "" : (look?.detail ?? "") };
+  }
+
+  /** A table of the settings in which the looks differ, with each value in full. */
+  private differences(): HTMLElement {
+    const sides = this.viewer.looks.order;
+    const settings = sides.map((side) => this.model.compared[side]?.settings ?? {});
+    const names = [...new Set(settings.flatMap((one) => Object.keys(one)))];
+    const rows = names.filter((name) => settings.some((one) => one[name] !== settings[0][name]));
+    this.changes.textContent = `Changes (${rows.length})`;
+    if (!rows.length) return h("p", {}, "Their settings are the same.");
+    const head = sides.map((side) => h("th", { scope: "col" }, this.named(side).name));
+    const cell = (value: string | undefined) => h("td", {}, value ?? "–");
+    return h(
+      "table",
+      {},
+      h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "setting"), ...head)),
+      h(
+        "tbody",
+        {},
+        ...rows.map((name) => h("tr", {}, h("th", { scope: "row" }, name), ...settings.map((one) => cell(one[name])))),
+      ),
+    );
   }
 }

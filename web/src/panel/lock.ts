@@ -208,7 +208,7 @@ export class LockTool {
 
   private click(event: MouseEvent): void {
     const { locks } = this.viewer.hair.a;
-    if (!locks || (this.viewer.compared && this.viewer.arrangement === "split") || !this.model.documents.recipe || this.busy()) return;
+    if (!locks || this.viewer.looks.split || this.viewer.looks.difference || !this.model.documents.recipe || this.busy()) return;
     const row = pick(locks.points, locks.offsets, this.viewer.camera, this.viewer.size, this.viewer.at(event))?.lock ?? -1;
     const more = event.shiftKey || event.ctrlKey || event.metaKey;
     if (!more) this.choose(row);

@@ -1,18 +1,21 @@
 // How the groom is looked at: camera, light, color, overlay, stage, locks and frame. It is remembered by file, kept in
 // bookmarks, and shared with the pages that follow.
 
+import { addressOf, type View, viewOf } from "../address";
+import { h } from "../dom";
 import type { Model } from "../model";
-import type { Followed } from "../protocol";
+import { openDialog } from "./dialog";
 import type { Viewer } from "../view/viewer";
 import { bindKey } from "./keys";
 import type { LockTool } from "./lock";
+import { ownName } from "./people";
 import type { Notices } from "./status";
 import type { TimelineBar } from "./timeline";
 import type { Viewbar } from "./viewbar";
 
-type State = Omit<Followed, "kind">;
-
-const SHARE_AFTER = 120; // time between two looks that are shared [ms]
+const KEEP_AFTER = 800; // time without a change of the light after which it is kept [ms]
+const SHARE_AFTER = 50; // time between two looks that are shared [ms]
+const SAME = 1e-4; // cameras that differ by less are the same [m]
 const STORE = "ringlet-look:";
 
 export class Look {
@@ -21,6 +24,11 @@ export class Look {
   private timer = 0;
   private applying = false;
   private restored = "";
+  /** Light, color and lens as they are kept with the recipe. */
+  private keptLight = "";
+  private keeping = 0;
+  /** What this page shows of the look of the leader. */
+  private applied: View | null = null;
 
   constructor(
     private readonly model: Model,
@@ -30,10 +38,18 @@ export class Look {
     private readonly timeline: TimelineBar,
     private readonly notices: Notices,
   ) {
-    viewer.controls.addEventListener("start", () => this.leaveLeader());
-    for (const topic of ["look", "chosen", "overlay"] as const) model.on(topic, () => this.changed());
+    addEventListener("hashchange", () => this.openLink());
+    for (const topic of ["look", "chosen", "overlay"] as const)
+      model.on(topic, () => {
+        this.leaveLeader();
+        this.changed();
+      });
     model.on("role", () => this.changed()); // a page that has just joined sees it
-    model.on("numbers", () => this.restore());
+    model.on("welcome", () => this.introduce());
+    model.on("numbers", () => {
+      this.restore();
+      this.follow(); // locks that are chosen may be there now
+    });
     model.on("followed", () => this.follow());
     addEventListener("pagehide", () => this.store());
     const digit = (event: KeyboardEvent) => /^Digit[1-9]$/.test(event.code) && !event.ctrlKey && !event.metaKey;
@@ -49,28 +65,30 @@ export class Look {
     return STORE + (this.model.welcome?.name ?? "");
   }
 
-  private get state(): State {
-    const { camera, controls } = this.viewer;
-    const { chosen, locks, overlay } = this.model;
+  /** How the groom is looked at now. */
+  get state(): View {
+    const { chosen, overlay } = this.model;
     return {
-      camera: [...camera.position.toArray(), ...controls.target.toArray()],
+      ...this.viewer.cameraState,
       light: this.bar.light.value,
       color: this.bar.color.value,
       overlay,
       file: chosen.file,
       place: chosen.place,
-      locks,
+      locks: this.lock.ids,
       frame: this.timeline.current,
     };
   }
 
-  private apply(state: State, all: boolean): void {
+  /** Looks at the groom as a state says; with `all` also at its stage, locks and frame. */
+  apply(state: View, all: boolean): void {
     this.applying = true;
-    this.viewer.lookFrom(state.camera);
+    this.viewer.lookFrom(state.camera, state.focal_length);
+    this.viewer.setLightTurn(state.light_turn ?? 0);
     this.bar.choose(state);
     if (all) {
       this.model.choose(state.file, state.place);
-      if (state.frame !== null) this.timeline.show(state.frame);
+      if (state.frame !== null) this.timeline.goTo(state.frame);
       this.lock.chooseIds(state.locks);
     }
     this.applying = false;
@@ -82,26 +100,65 @@ export class Look {
     this.timer = window.setTimeout(() => {
       this.timer = 0;
       this.store();
+      this.keepLight();
       const { role } = this.model;
-      if (role.leads && role.others) this.model.say({ kind: "look", ...this.state });
+      if (role.leads && role.people.length > 1) this.model.link?.whisper({ kind: "look", ...this.state });
     }, SHARE_AFTER);
   }
 
   private follow(): void {
     const { followed, role } = this.model;
-    if (followed && !role.leads && this.follows) this.apply(followed, true);
+    if (!followed || role.leads || !this.follows) return;
+    this.apply(followed, true);
+    this.applied = this.state;
   }
 
-  /** The hand turns the head: this page has a look of its own from now on. */
+  /** A follower looks elsewhere than the leader: this page has a look of its own from now on. */
   private leaveLeader(): void {
-    if (this.model.role.leads || !this.follows) return;
+    const { role, followed } = this.model;
+    if (this.applying || role.leads || !this.follows || !followed || !this.applied) return;
+    if (same(this.applied, this.state)) return;
     this.setFollows(false);
   }
 
   setFollows(on: boolean): void {
     this.follows = on;
-    this.model.tell("role");
     if (on) this.follow();
+    this.introduce();
+    this.model.tell("role");
+  }
+
+  /** Says to the others who is at this page, and whether it follows. */
+  introduce(): void {
+    this.model.link?.whisper({ kind: "introduce", person: ownName(), follows: this.follows });
+  }
+
+  /** Copies a link to what this page looks at; where the browser refuses, it is shown. */
+  async copyLink(): Promise<void> {
+    const address = addressOf(location.hash, { name: this.model.welcome?.name ?? "", view: this.state });
+    history.replaceState(null, "", address);
+    try {
+      await navigator.clipboard.writeText(address);
+      this.notices.show("The link to this view is copied");
+    } catch {
+      const text = h("input", { type: "text", readonly: true, value: address, "aria-label": "Link to this view" });
+      openDialog("Link to this view", text);
+      text.select();
+    }
+  }
+
+  /** Opens the view that the address holds. */
+  private openLink(): boolean {
+    const link = viewOf(location.hash);
+    if (!link) return false;
+    if (link.name && link.name !== this.model.welcome?.name) {
+      this.notices.show(`The link is of ${link.name}; open that file to see its view`);
+      return false;
+    }
+    this.apply(link.view, true);
+    if (!this.model.role.leads) this.setFollows(false);
+    else this.changed();
+    return true;
   }
 
   private store(): void {
@@ -112,20 +169,50 @@ export class Look {
   private restore(): void {
     if (this.restored === this.key) return;
     this.restored = this.key;
+    this.keptLight = lightOf(this.state);
+    if (this.openLink()) return;
     const stored = localStorage.getItem(this.key);
-    if (stored && this.model.role.leads) this.apply(JSON.parse(stored) as State, false);
+    const last = stored ? (JSON.parse(stored) as View) : undefined;
+    const kept = this.model.views["0"]; // light, color and lens are those of the recipe, the camera is this browser's
+    const view = kept ? { ...kept, camera: last?.camera ?? kept.camera } : last;
+    if (view && this.model.role.leads) this.apply(view, false);
+    this.keptLight = lightOf(this.state);
   }
 
-  private bookmark(number: string, keep: boolean): void {
-    const key = `${this.key}:${number}`;
+  /** Recalls a bookmark of the recipe, or keeps one. */
+  bookmark(slot: string, keep: boolean): void {
+    const { model } = this;
+    const kept = model.views[slot];
     if (keep) {
-      localStorage.setItem(key, JSON.stringify(this.state));
-      this.notices.show(`Bookmark ${number} is kept`);
-      return;
-    }
-    const stored = localStorage.getItem(key);
-    if (stored) this.apply(JSON.parse(stored) as State, false);
-    else this.notices.show(`There is no bookmark ${number}; Shift+${number} keeps one`);
-    if (stored) this.changed();
+      model.views[slot] = this.state; // the server says it again
+      model.say({ kind: "keep_view", slot: Number(slot), look: this.state });
+      this.notices.show(`Bookmark ${slot} is kept`);
+      model.tell("views");
+    } else if (kept) {
+      this.apply(kept, false);
+      this.changed();
+    } else this.notices.show(`There is no bookmark ${slot}; Shift+${slot} keeps one`);
   }
+
+  /** Keeps light, color and lens with the recipe, once the page that leads has changed them. */
+  private keepLight(): void {
+    clearTimeout(this.keeping);
+    if (!this.model.role.leads || this.restored !== this.key || lightOf(this.state) === this.keptLight) return;
+    this.keeping = window.setTimeout(() => {
+      this.keptLight = lightOf(this.state);
+      this.model.say({ kind: "keep_view", slot: 0, look: this.state });
+    }, KEEP_AFTER);
+  }
+}
+
+/** What a recipe is lit and seen with. */
+function lightOf({ light, light_turn, color, focal_length }: View): string {
+  return JSON.stringify([light, light_turn, color, focal_length]);
+}
+
+/** Whether two views show the same. */
+function same(a: View, b: View): boolean {
+  const rest = ({ focal_length, light_turn, light, color, overlay, file, place, locks, frame }: View) =>
+    JSON.stringify([focal_length, light_turn, light, color, overlay, file, place, locks, frame]);
+  return rest(a) === rest(b) && a.camera.every((value, k) => Math.abs(value - b.camera[k]) < SAME);
 }

@@ -13,15 +13,14 @@ import type { Setting } from "./schema";
 import { Slider } from "./slider";
 import { shownAs } from "./units";
 
-const ALONG = "along the hair";
-
 export class NumberField extends Field {
   private readonly slider: Slider;
   private readonly number: NumberInput;
   /** The range of usual values; another serves only while the value is outside of it. */
   private usual: Range | null = null;
   private range: Range = { least: 0, most: 1, step: 0.01 };
-  private more: HTMLElement[] = [];
+  private more: HTMLElement | null = null;
+  private readonly folds: { element: HTMLElement; fields: Field[] }[] = [];
   private readonly inner: Field[];
 
   constructor(model: Model, file: File, place: Place, setting: Setting) {
@@ -45,13 +44,13 @@ export class NumberField extends Field {
     if (!this.inner.length) return;
     const ramps: Field[] = this.inner.filter((field) => field instanceof RampField);
     const others = this.inner.filter((field) => !ramps.includes(field));
-    const fold = (label: string, fields: Field[]) => {
-      const details = h("details", { class: "varies" }, h("summary", {}, label), ...fields.map((field) => field.element));
-      details.toggleAttribute("open", label === ALONG && fields.some((field) => field.isSaid));
-      return details;
-    };
-    this.more = [...(ramps.length ? [fold(ALONG, ramps)] : []), ...(others.length ? [fold("varies", others)] : [])];
-    this.element.append(...this.more);
+    for (const [label, fields] of [
+      ["along the hair", ramps],
+      ["varies", others],
+    ] as const)
+      if (fields.length) this.folds.push({ element: foldOf(label, fields), fields });
+    this.more = h("div", { class: "folds" }, ...this.folds.map(({ element }) => element));
+    this.element.append(this.more);
   }
 
   /** The locks whose own value this is; empty: it is that of all. */
@@ -98,7 +97,8 @@ export class NumberField extends Field {
 
   protected show(): void {
     for (const field of this.inner) field.update();
-    for (const element of this.more) element.toggleAttribute("hidden", this.locks.length > 0);
+    for (const { element, fields } of this.folds) element.classList.toggle("said", fields.some((field) => field.isSaid));
+    this.more?.toggleAttribute("hidden", this.locks.length > 0);
     if (this.slider.held) return;
     const { factor, unit } = this.shown;
     const value = this.number_;
@@ -123,4 +123,8 @@ export class NumberField extends Field {
       this.range.step,
     );
   }
+}
+
+function foldOf(label: string, fields: Field[]): HTMLElement {
+  return h("details", { class: "varies" }, h("summary", {}, label), ...fields.map((field) => field.element));
 }

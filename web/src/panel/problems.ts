@@ -12,7 +12,14 @@ export class ProblemBar {
   /** A problem of the page itself, such as a lost connection. */
   private own = "";
 
-  constructor(private readonly model: Model) {
+  private readonly list = h("div", {});
+
+  /** questions: of other people, above the problems */
+  constructor(
+    private readonly model: Model,
+    questions: HTMLElement,
+  ) {
+    this.element.append(questions, this.list);
     for (const topic of ["problems", "role"] as const) model.on(topic, () => this.update());
     model.on("progress", () => this.showProgress());
     new ResizeObserver(() => {
@@ -29,8 +36,7 @@ export class ProblemBar {
 
   private update(): void {
     const own = this.own ? [h("div", { class: "problem" }, h("p", {}, this.own))] : [];
-    const asked = this.model.role.asked ? [this.question()] : [];
-    this.element.replaceChildren(...own, ...asked, ...this.model.problems.map((one) => this.row(one)), this.progress);
+    this.list.replaceChildren(...own, ...this.model.problems.map((one) => this.row(one)), this.progress);
     document.documentElement.classList.toggle("old-look", this.model.problems.some((one) => OLD_LOOK.includes(one.subject)));
   }
 
@@ -48,18 +54,6 @@ export class ProblemBar {
       { class: `problem ${problem.subject.split("/")[0]}`, "data-problem": problem.subject },
       h("p", {}, this.model.words(problem.message)),
       h("div", { class: "group" }, ...buttons),
-    );
-  }
-
-  /** Another page asks to edit. */
-  private question(): HTMLElement {
-    const answer = (label: string, over: boolean) =>
-      h("button", { type: "button", class: "quiet", onclick: () => this.model.say({ kind: "hand", over }) }, label);
-    return h(
-      "div",
-      { class: "problem recovered" },
-      h("p", {}, "Another viewer asks to edit. Without an answer they may in 10 seconds."),
-      h("div", { class: "group" }, answer("Hand over", true), answer("Not now", false)),
     );
   }
 

@@ -1,33 +1,33 @@
-// The settings of the stage that is chosen: what its file says and the first few, the others on demand or by search.
+// The settings of the stage that is chosen: what its file says, the most used and the pinned ones; the others on demand.
 
 import { h } from "../dom";
 import type { Model } from "../model";
 import type { Field } from "./field";
 import { makeField } from "./make_field";
+import { FieldTools, isPinned, pin } from "./pins";
 import { Schemas } from "./schema";
+import { SettingSearch } from "./search";
 
 const FEW = 5; // settings that are shown of a stage in any case; its schema begins with the most used
+const FULL = 6; // settings that are shown with their sliders below their names; more get one line each
 
 export class Settings {
   readonly element = h("aside", { class: "panel settings", "aria-label": "Settings" });
-  private readonly search = h("input", {
-    type: "search",
-    class: "search",
-    placeholder: "Search settings",
-    "aria-label": "Search settings",
-    autocomplete: "off",
-  });
   private readonly more = h("button", { type: "button", class: "quiet more" });
+  private readonly search: SettingSearch;
   private fields: Field[] = [];
+  private readonly tools = new Map<Field, FieldTools>();
   private built = "";
   /** Stages whose settings are all shown. */
   private readonly opened = new Set<string>();
   /** Settings that stay in view, although the file no longer says them, while their stage is. */
   private readonly kept = new Set<string>();
+  /** Settings that were opened from one line. */
+  private readonly unfolded = new Set<string>();
 
   constructor(private readonly model: Model) {
+    this.search = new SettingSearch(model, (name) => this.reveal(name), () => this.sift());
     for (const topic of ["document", "chosen", "role", "names"] as const) model.on(topic, () => this.update());
-    this.search.addEventListener("input", () => this.sift());
     this.more.addEventListener("click", () => {
       if (!this.opened.delete(this.stage)) this.opened.add(this.stage);
       this.sift();
@@ -37,6 +37,12 @@ export class Settings {
   private get stage(): string {
     const { file, place } = this.model.chosen;
     return `${file}:${place.join("/")}`;
+  }
+
+  /** The operator or the table, by its name in the file. */
+  private get kind(): string {
+    const { file, place } = this.model.chosen;
+    return String(this.model.value(file, [...place, "op"]) ?? (place[0] || file));
   }
 
   update(): void {
@@ -52,17 +58,20 @@ export class Settings {
     if (built !== this.built) {
       this.built = built;
       this.kept.clear();
-      this.search.value = "";
+      this.unfolded.clear();
       this.fields = settings.map((setting) =>
         makeField(this.model, chosen.file, [...chosen.place, setting.name], setting),
       );
+      this.tools.clear();
+      for (const field of this.fields) this.tools.set(field, this.makeTools(field));
       const nothing = locks.length > 0 && !settings.length;
       const of = locks.length === 1 ? `lock ${locks[0]}` : `${locks.length} locks`;
       this.element.replaceChildren(
         h("h2", {}, stageTitle(this.model)),
         locks.length ? h("p", { class: "alone" }, `of ${of} alone`) : "",
+        this.search.input,
+        this.search.results,
         nothing ? h("p", { class: "told" }, "No setting of this stage can differ for a single lock.") : "",
-        settings.length > FEW ? this.search : "",
         h("div", { class: "fields" }, ...this.fields.map((field) => field.element)),
         this.more,
       );
@@ -73,22 +82,54 @@ export class Settings {
     this.sift();
   }
 
-  /** Shows the fields that are looked for, or those of first sight. */
+  private makeTools(field: Field): FieldTools {
+    const { name } = field.setting;
+    return new FieldTools(
+      field,
+      () => {
+        pin(this.kind, name, !isPinned(this.kind, name));
+        this.sift();
+      },
+      () => {
+        if (!this.unfolded.delete(name)) this.unfolded.add(name);
+        this.sift();
+      },
+    );
+  }
+
+  /** Shows the fields of first sight, or all. */
   private sift(): void {
-    const words = this.search.value.toLowerCase().split(/\s+/).filter(Boolean);
-    const all = this.opened.has(this.stage) || this.fields.length <= FEW + 2;
-    let hidden = 0;
+    this.element.classList.toggle("searching", this.search.on);
+    const all = this.opened.has(this.stage) || this.fields.length <= FEW + 1;
+    let shown = 0;
     this.fields.forEach((field, k) => {
-      const { name, label, description } = field.setting;
+      const { name } = field.setting;
       if (field.isSaid || field.element.classList.contains("wrong")) this.kept.add(name);
-      const text = `${name} ${label} ${description}`.toLowerCase();
-      const shown = words.length ? words.every((word) => text.includes(word)) : all || k < FEW || this.kept.has(name);
-      field.element.toggleAttribute("hidden", !shown);
-      if (!shown) hidden++;
+      const pinned = isPinned(this.kind, name);
+      this.tools.get(field)!.showPinned(pinned);
+      const visible = all || k < FEW || pinned || this.kept.has(name);
+      field.element.toggleAttribute("hidden", this.search.on || !visible);
+      if (visible) shown++;
     });
-    this.more.toggleAttribute("hidden", words.length > 0 || this.fields.length <= FEW + 2 || (!hidden && !all));
-    this.more.textContent = all ? "Show fewer settings" : `Show all settings (${hidden} more)`;
+    for (const [field, tools] of this.tools) tools.showFold(shown > FULL, this.unfolded.has(field.setting.name));
+    const hidden = this.fields.length - shown;
+    this.more.toggleAttribute("hidden", this.search.on || this.fields.length <= FEW + 1 || (!hidden && !all));
+    this.more.textContent = all ? "Fewer settings" : `All settings (${hidden} more)`;
     this.more.setAttribute("aria-expanded", String(all));
+  }
+
+  /** Shows a setting of the stage that is chosen, opened and in the middle of the panel. */
+  private reveal(name: string): void {
+    const field = this.fields.find(({ setting }) => setting.name === name);
+    if (!field) return;
+    this.kept.add(name);
+    this.unfolded.add(name);
+    this.sift();
+    field.element.scrollIntoView({ block: "center" });
+    field.element.classList.remove("found");
+    void field.element.offsetWidth; // begins the animation again
+    field.element.classList.add("found");
+    field.element.querySelector<HTMLElement>("input, select, button:not(.pin, .reset)")?.focus();
   }
 }
 

@@ -6,6 +6,7 @@ import type { Model } from "../model";
 import { bindKey, plainKey } from "./keys";
 import type { Frame, Timeline } from "../protocol";
 import { OVERLAYS, overlayValues } from "../view/overlays";
+import type { Side } from "../view/looks";
 import type { Viewer } from "../view/viewer";
 
 type Layer = "shot" | "against";
@@ -41,10 +42,7 @@ export class TimelineBar {
   ) {
     model.on("overlay", () => this.overlay());
     this.against.addEventListener("change", () => model.say({ kind: "against", name: this.against.value }));
-    this.slider.addEventListener("input", () => {
-      this.follows = false;
-      this.show(Number(this.slider.value));
-    });
+    this.slider.addEventListener("input", () => this.goTo(Number(this.slider.value)));
     this.run.addEventListener("click", () => this.press());
     const frames = h("div", { class: "frames" }, this.slider, this.runs);
     this.element.append(this.run, this.again, this.watch, frames, this.readout, this.against);
@@ -57,8 +55,7 @@ export class TimelineBar {
   private by(frames: number): void {
     const { timeline } = this.model;
     if (!timeline) return;
-    this.follows = false;
-    this.show(Math.min(timeline.last, Math.max(timeline.first, this.frame + frames)));
+    this.goTo(Math.min(timeline.last, Math.max(timeline.first, this.frame + frames)));
   }
 
   /** A frame has come. */
@@ -190,7 +187,8 @@ export class TimelineBar {
   }
 
   /** Hair has gone from where a frame had put it. */
-  displaced(side: "a" | "b"): void {
+  displaced(side: Side): void {
+    if (side === "c" || side === "d") return;
     delete this.drawn[side === "a" ? "shot" : "against"];
   }
 
@@ -216,6 +214,12 @@ export class TimelineBar {
   private next(): void {
     const { frames } = this.model.timeline ?? {};
     if (frames?.length && this.settled) this.show(frames.find((frame) => frame > this.frame) ?? frames[0]);
+  }
+
+  /** Shows a frame from now on, whichever come. */
+  goTo(frame: number): void {
+    this.follows = false;
+    this.show(frame);
   }
 
   /** Shows a frame, or the nearest that is there, as soon as it has come. */

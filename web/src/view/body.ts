@@ -10,8 +10,9 @@ import {
   type Scene,
   Vector3,
 } from "three";
-import type { Body as BodyMessage, Hairs } from "../protocol";
+import type { Body as BodyMessage } from "../protocol";
 import type { Lights } from "./lights";
+import type { Side } from "./looks";
 import { DEVELOP, LIGHTS, SHADOW } from "./shaders";
 import type { Shadow } from "./shadow";
 
@@ -66,14 +67,14 @@ const LOOKS: Record<string, { roughness: number; specular: number; wrap: number;
   matte: { roughness: 0.8, specular: 0.2, wrap: 0.05, sheen: 0 },
 };
 
-/** Two looks are compared: bodies may be elsewhere on each side. */
-export type Side = Hairs["side"];
-
 export class Body {
   readonly mesh: Mesh;
   readonly caster: Mesh;
   private readonly material: RawShaderMaterial;
-  private readonly geometry: Record<Side, BufferGeometry> = { a: new BufferGeometry(), b: new BufferGeometry() };
+  /** Bodies may be elsewhere in each of the looks that are compared. */
+  private readonly geometry = new Map<Side, BufferGeometry>();
+  private readonly index: BufferAttribute;
+  private readonly tints: BufferAttribute;
   private readonly rest: Float32Array;
 
   constructor(
@@ -83,15 +84,12 @@ export class Body {
     private readonly scenes: [Scene, Scene],
   ) {
     this.rest = message.points;
-    const index = new BufferAttribute(message.triangles, 1);
+    this.index = new BufferAttribute(message.triangles, 1);
     const count = message.points.length / 3;
     const tint = new Float32Array(3 * count);
     for (let i = 0; i < count; i++)
       tint.set(message.colors.length ? message.colors.subarray(3 * i, 3 * i + 3) : message.color, 3 * i);
-    const tints = new BufferAttribute(tint, 3);
-    for (const geometry of Object.values(this.geometry)) geometry.setIndex(index).setAttribute("tint", tints);
-    this.place("a");
-    this.place("b");
+    this.tints = new BufferAttribute(tint, 3);
     const look = LOOKS[message.made_of] ?? LOOKS["matte"];
     this.material = new RawShaderMaterial({
       glslVersion: GLSL3,
@@ -105,8 +103,8 @@ export class Body {
         ...Object.fromEntries(Object.entries(look).map(([name, value]) => [name, { value }])),
       },
     });
-    this.mesh = new Mesh(this.geometry.a, this.material);
-    this.caster = new Mesh(this.geometry.a, new MeshBasicMaterial({ side: 2, colorWrite: false }));
+    this.mesh = new Mesh(this.at("a"), this.material);
+    this.caster = new Mesh(this.at("a"), new MeshBasicMaterial({ side: 2, colorWrite: false }));
     this.mesh.frustumCulled = this.caster.frustumCulled = false;
     scenes[0].add(this.mesh);
     scenes[1].add(this.caster);
@@ -118,7 +116,7 @@ export class Body {
 
   /** Moves it on one side; nothing: to where it rests. */
   place(side: Side, points: Float32Array = this.rest): void {
-    const geometry = this.geometry[side];
+    const geometry = this.at(side);
     if (geometry.getAttribute("position")?.array === points) return;
     geometry.setAttribute("position", new BufferAttribute(points, 3));
     geometry.computeVertexNormals();
@@ -126,7 +124,18 @@ export class Body {
 
   /** Lets it be seen as it is on one side. */
   turnTo(side: Side): void {
-    this.mesh.geometry = this.caster.geometry = this.geometry[side];
+    this.mesh.geometry = this.caster.geometry = this.at(side);
+  }
+
+  /** Its geometry on one side, at first where it rests. */
+  private at(side: Side): BufferGeometry {
+    let geometry = this.geometry.get(side);
+    if (!geometry) {
+      geometry = new BufferGeometry().setIndex(this.index).setAttribute("tint", this.tints);
+      this.geometry.set(side, geometry);
+      this.place(side);
+    }
+    return geometry;
   }
 
   seenFrom(eye: Vector3): void {
@@ -136,7 +145,7 @@ export class Body {
   dispose(): void {
     this.scenes[0].remove(this.mesh);
     this.scenes[1].remove(this.caster);
-    for (const geometry of Object.values(this.geometry)) geometry.dispose();
+    for (const geometry of this.geometry.values()) geometry.dispose();
     this.material.dispose();
   }
 }

@@ -35,6 +35,13 @@ export function still(viewer: Viewer, width: number, height: number, clear: bool
   return canvas;
 }
 
+/** A small picture of the open look alone. */
+export function thumbnail(viewer: Viewer): HTMLCanvasElement {
+  let picture!: HTMLCanvasElement;
+  viewer.withView(() => (picture = still(viewer, 400, 250, false)));
+  return picture;
+}
+
 /** Records what is drawn until it is stopped. */
 export class Recorder {
   private recorder: MediaRecorder | null = null;

@@ -39,6 +39,8 @@ export class Hair {
   readonly firstScene = new Scene();
   readonly box = new Box3();
   locks: Locks | null = null;
+  /** Points of the locks where they are now, at rest or in a frame. */
+  placed: Float32Array | null = null;
   table: LockTable | null = null;
   private carry: Carry | null = null;
   private geometry = new InstancedBufferGeometry();
@@ -138,6 +140,7 @@ export class Hair {
   /** Puts the hair where it is, at rest or in a frame. */
   place({ points, axis, root, drawn, left }: Placed): void {
     if (!this.locks || points.length !== this.locks.points.length) return;
+    this.placed = points;
     this.table = lockTable(points, this.locks.offsets, axis, this.carry?.hairs.window ?? new Int32Array());
     this.setMarks(this.locks.marked);
     this.spread();

@@ -75,6 +75,8 @@ export const PRESETS: Record<string, Preset> = {
 
 export class Lights {
   preset: Preset = PRESETS["studio"];
+  /** Angle by which all lamps are turned about the vertical, to the right [degrees]. */
+  turn = 0;
   readonly uniforms = {
     lightFrom: { value: [0, 1, 2, 3].map(() => new Vector3()) },
     lightStrength: { value: [0, 1, 2, 3].map(() => new Vector3()) },
@@ -96,7 +98,7 @@ export class Lights {
       turn.makeRotationY(Math.atan2(back.x, back.z));
     }
     lamps.forEach((one, k) => {
-      const [a, e] = [(one.azimuth * Math.PI) / 180, (one.elevation * Math.PI) / 180];
+      const [a, e] = [((one.azimuth + this.turn) * Math.PI) / 180, (one.elevation * Math.PI) / 180];
       this.uniforms.lightFrom.value[k]
         .set(Math.sin(a) * Math.cos(e), Math.sin(e), Math.cos(a) * Math.cos(e))
         .applyMatrix4(turn);

@@ -2,20 +2,23 @@
 
 import { type Box3, PerspectiveCamera, Scene, Vector2, Vector3, WebGLRenderer } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
-import type { Body as BodyMessage, Colors, Hairs, Locks } from "../protocol";
+import type { Body as BodyMessage, Colors, Hairs, Locks, Shared } from "../protocol";
 import { Backdrop } from "./backdrop";
-import { Body, type Side } from "./body";
+import { Body } from "./body";
+import { Difference } from "./difference";
 import { GuideLines } from "./guides";
 import { type Colour, Hair } from "./hair";
 import { Lights, PRESETS } from "./lights";
+import { type Cell, type Covered, Looks, type Side } from "./looks";
 import { Pace, whenDrawn } from "./pace";
 import { Shadow } from "./shadow";
 
-const FOV = 24;
-const SUBJECT = 0.8; // width of what is framed, as a part of the picture's height
+export const FOCAL_LENGTH = 85; // of a portrait lens [mm]
+const FILM = 36; // height of the picture that focal lengths refer to, as those of ringlet picture [mm]
 const REST_AFTER = 180; // time without a movement after which all detail is drawn [ms]
 
-export type Arrangement = "split" | "wipe" | "flip";
+/** The camera, and what it is set to: as looks are stored. */
+export type CameraState = Pick<Shared, "camera" | "focal_length" | "light_turn">;
 
 export interface DrawStatistics {
   drawMs: number;
@@ -24,17 +27,12 @@ export interface DrawStatistics {
 
 export class Viewer {
   readonly renderer: WebGLRenderer;
-  readonly camera = new PerspectiveCamera(FOV, 1, 0.02, 20);
+  readonly camera = new PerspectiveCamera(fieldOfView(FOCAL_LENGTH), 1, 0.02, 20);
   readonly controls: OrbitControls;
   readonly lights = new Lights();
   readonly hair: Record<Side, Hair>;
   readonly guides = new GuideLines();
-  compared = false;
-  /** How two looks are arranged, which is on the left, which is seen alone, and where the wipe is. */
-  arrangement: Arrangement = "split";
-  first: Side = "a";
-  front: Side = "a";
-  wipe = 0.5;
+  readonly looks = new Looks();
   private theme: "dark" | "light" = "dark";
   turntable = false;
   onPaint: () => void = () => {};
@@ -42,18 +40,20 @@ export class Viewer {
   onLook: () => void = () => {};
   onDraw: (statistics: DrawStatistics) => void = () => {};
 
-  /** How much of the picture panels cover on the left and on the right [pixels]. */
-  covered: () => [number, number] = () => [0, 0];
+  covered: () => Covered = () => [0, 0, 0, 0];
 
   /** Whether there is no graphics card: then pictures are plainer, so that they come at all. */
   readonly software: boolean;
 
   private readonly shadow: Shadow;
   private readonly backdrop = new Backdrop();
+  private readonly difference: Difference;
   private readonly bodies = new Map<number, Body>();
   private readonly scene = new Scene();
   private readonly casters = new Scene();
   private framed = false;
+  /** Whether a picture is drawn that is kept: no panels cover it. */
+  private keeping = false;
   private hairShown = true;
   private wanted = false;
   private moved = 0;
@@ -83,7 +83,9 @@ export class Viewer {
     this.controls.maxDistance = 6;
     this.controls.addEventListener("change", () => this.move());
     this.shadow = new Shadow(this.software ? 384 : 1024);
-    this.hair = { a: new Hair(this.lights, this.shadow), b: new Hair(this.lights, this.shadow) };
+    const hair = () => new Hair(this.lights, this.shadow);
+    this.hair = { a: hair(), b: hair(), c: hair(), d: hair() };
+    this.difference = new Difference(this.software ? 0 : 4);
     new ResizeObserver(() => this.resize()).observe(element);
     this.resize();
   }
@@ -98,9 +100,8 @@ export class Viewer {
   reset(): void {
     for (const body of this.bodies.values()) body.dispose();
     this.bodies.clear();
-    this.hair.a.clear();
-    this.hair.b.clear();
-    this.compare(false);
+    for (const hair of Object.values(this.hair)) hair.clear();
+    this.looks.order = ["a"];
     this.framed = false;
   }
 
@@ -154,10 +155,45 @@ export class Viewer {
     this.invalidate();
   }
 
-  /** Shows the other look beside the first, or no more. */
-  compare(on: boolean): void {
-    this.compared = on;
+  /** Shows another look too, or no more. */
+  compare(side: Side, on: boolean): void {
+    if (on) this.looks.add(side);
+    else this.looks.remove(side);
     this.invalidate();
+  }
+
+  /** Whether several looks are in the picture. */
+  get compared(): boolean {
+    return this.looks.several;
+  }
+
+  /** Focal length of the lens, for a picture that is 36 mm high [mm]; the subject keeps its size. */
+  get focalLength(): number {
+    return FILM / 2 / Math.tan((0.5 * this.camera.fov * Math.PI) / 180);
+  }
+
+  set focalLength(length: number) {
+    const away = this.camera.position.clone().sub(this.controls.target).multiplyScalar(length / this.focalLength);
+    this.camera.position.copy(this.controls.target).add(away);
+    this.camera.fov = fieldOfView(length);
+    this.onLook();
+    this.invalidate();
+  }
+
+  /** Angle by which the lights are turned about the vertical [degrees]. */
+  setLightTurn(degrees: number): void {
+    this.lights.turn = degrees;
+    this.invalidate();
+  }
+
+  /** The camera and the turn of the lights, to be stored. */
+  get cameraState(): CameraState {
+    const { camera, controls } = this;
+    return {
+      camera: [...camera.position.toArray(), ...controls.target.toArray()],
+      focal_length: round(this.focalLength, 2),
+      light_turn: this.lights.turn,
+    };
   }
 
   /** The middle of all hair. */
@@ -166,7 +202,7 @@ export class Viewer {
   }
 
   /** Puts the camera before the subject so that all hair is in the picture; without angles it keeps its direction. */
-  frame(azimuth = 34, elevation = 6): void {
+  frame(azimuth = 34, elevation = 6, picture = this.size): void {
     const box = this.hair.a.box;
     if (box.isEmpty()) return;
     this.framed = true;
@@ -174,9 +210,8 @@ export class Viewer {
     const target = box.getCenter(new Vector3());
     target.y -= 0.06 * size.y;
     const radius = 0.5 * Math.max(size.x, size.z, 1.12 * size.y);
-    const { clientWidth, clientHeight } = this.element;
-    const narrow = Math.min(1, clientWidth / Math.max(clientHeight, 1));
-    const distance = (1.32 * radius) / Math.tan((0.5 * FOV * Math.PI) / 180) / narrow;
+    const narrow = Math.min(1, picture.width / Math.max(picture.height, 1));
+    const distance = (1.32 * radius) / Math.tan((0.5 * this.camera.fov * Math.PI) / 180) / narrow;
     const [a, e] = [(azimuth * Math.PI) / 180, (elevation * Math.PI) / 180];
     this.controls.target.copy(target);
     this.camera.position
@@ -188,14 +223,29 @@ export class Viewer {
     this.invalidate();
   }
 
-  /** Puts the camera: its place and its target, six numbers. */
-  lookFrom(camera: number[]): void {
+  /** Puts the camera: its place and its target, six numbers, and the focal length of its lens [mm]. */
+  lookFrom(camera: number[], focalLength = this.focalLength): void {
     this.framed = true;
+    this.camera.fov = fieldOfView(focalLength);
     this.camera.position.fromArray(camera);
     this.controls.target.fromArray(camera, 3);
     this.camera.lookAt(this.controls.target);
     this.onLook();
     this.invalidate();
+  }
+
+  /** Does something with the open look alone, after which the camera is where it was. */
+  withView(does: () => void): void {
+    const { camera, focal_length } = this.cameraState;
+    const { order } = this.looks;
+    const moved = this.onLook;
+    this.onLook = () => {};
+    this.looks.order = ["a"];
+    does();
+    this.looks.order = order;
+    this.lookFrom(camera, focal_length);
+    this.onLook = moved;
+    this.drawNow();
   }
 
   /** Something moves: speed counts more than detail for a moment. */
@@ -241,7 +291,9 @@ export class Viewer {
     renderer.setPixelRatio(1);
     renderer.setSize(width, height, false);
     if (wall) this.backdrop.setWall(wall, wall);
+    this.keeping = true;
     this.drawNow();
+    this.keeping = false;
     taken(renderer.domElement);
     this.backdrop.setTheme(this.theme);
     renderer.setPixelRatio(ratio);
@@ -299,57 +351,68 @@ export class Viewer {
     camera.updateMatrixWorld();
     lights.update(camera);
     this.backdrop.update(size.x / Math.max(size.y, 1));
-    const both: Side[] = this.first === "a" ? ["a", "b"] : ["b", "a"];
-    const sides: Side[] = !this.compared ? ["a"] : this.arrangement === "flip" ? [this.front] : both;
-    const split = this.compared && this.arrangement === "split";
-    const width = split ? size.x / 2 : size.x;
-    camera.aspect = width / Math.max(size.y, 1);
-    const aside = this.makeRoom(width, size.y);
-    const pixel = (2 * Math.tan((0.5 * FOV * Math.PI) / 180)) / (size.y * camera.zoom * renderer.getPixelRatio());
     for (const body of this.bodies.values()) body.seenFrom(camera.position);
-    renderer.setScissorTest(sides.length > 1);
-    sides.forEach((side, k) => {
-      const hair = this.hair[side];
-      camera.setViewOffset(width, size.y, -aside[k], 0, width, size.y);
-      for (const body of this.bodies.values()) body.turnTo(side);
-      hair.setDetail(detail, detail < 0.5 ? 2 : 1);
-      hair.update(renderer);
-      hair.seenFrom(camera.position, pixel);
-      hair.litFrom(lights.key, this.shadow.texel);
-      const box = this.lit(hair);
-      renderer.setScissorTest(false);
-      if (!box.isEmpty() && this.hairShown) {
-        const casters = { bodies: this.casters, hairDepth: hair.depthScene, hairLayers: hair.layersScene };
-        this.shadow.update(renderer, lights.key, box, casters);
-      }
-      renderer.setScissorTest(sides.length > 1);
-      const [begin, end] = split ? [k * width, (k + 1) * width] : [k * this.wipe * width, k ? width : this.wipe * width];
-      renderer.setViewport(split ? begin : 0, 0, width, size.y);
-      renderer.setScissor(begin, 0, end - begin, size.y);
-      renderer.clear();
-      renderer.render(this.backdrop.scene, camera);
-      renderer.render(this.scene, camera);
-      if (hair.table && this.hairShown) {
-        renderer.render(hair.firstScene, camera);
-        renderer.render(hair.scene, camera);
-      }
-      if (side === "a" && this.guides.shown) {
-        renderer.clearDepth();
-        renderer.render(this.casters, camera);
-        renderer.render(this.guides.scene, camera);
-      }
+    const { difference, looks } = this;
+    const cells = looks.cells(size.x, size.y, this.keeping ? [0, 0, 0, 0] : this.covered());
+    cells.forEach((cell, k) => {
+      if (looks.difference) renderer.setRenderTarget(difference.target(k, renderer));
+      this.aim(cell, looks.zoom(cell));
+      const { x, y, width, height } = cell.box;
+      this.paintLook(cell.side, detail, size.y, () => {
+        renderer.setScissorTest(cells.length > 1 && !looks.difference);
+        // The view of a look next to others is that of its cell; else all are seen through one window.
+        if (looks.split) renderer.setViewport(x, size.y - y - height, width, height);
+        else renderer.setViewport(0, 0, size.x, size.y);
+        renderer.setScissor(x, size.y - y - height, width, height);
+      });
     });
+    renderer.setRenderTarget(null);
     renderer.setScissorTest(false);
     renderer.setViewport(0, 0, size.x, size.y);
+    if (looks.difference) difference.draw(renderer, camera);
+    if (!looks.split) return;
+    this.aim({ side: "a", box: { x: 0, y: 0, width: size.x, height: size.y }, clear: { x: 0, y: 0, width: size.x, height: size.y } }, 1);
   }
 
-  /** Two looks are as large as fits between the panels; returns by how much each is moved to the middle there [pixels]. */
-  private makeRoom(width: number, height: number): [number, number] {
-    this.camera.zoom = 1;
-    if (!this.compared || this.arrangement !== "split") return [0, 0];
-    const [left, right] = this.covered().map((pixels) => Math.min(pixels, 0.8 * width));
-    this.camera.zoom = Math.min(1, (width - Math.max(left, right)) / (SUBJECT * height));
-    return [0.5 * left, -0.5 * right];
+  /** Aims the camera at the middle of what is clear of a cell. */
+  private aim({ box, clear }: Cell, zoom: number): void {
+    const { camera, looks } = this;
+    camera.zoom = zoom;
+    camera.aspect = clear.width / Math.max(clear.height, 1);
+    if (looks.split) camera.setViewOffset(clear.width, clear.height, box.x - clear.x, box.y - clear.y, box.width, box.height);
+    else camera.setViewOffset(clear.width, clear.height, 0, 0, clear.width, clear.height);
+  }
+
+  /** Draws one look. window: sets what of the canvas it fills, after its shadows are drawn. */
+  private paintLook(side: Side, detail: number, height: number, window: () => void): void {
+    const { renderer, camera, lights } = this;
+    const hair = this.hair[side];
+    const full = camera.view?.fullHeight ?? height;
+    const pixel = (2 * Math.tan((0.5 * camera.fov * Math.PI) / 180)) / (full * camera.zoom * renderer.getPixelRatio());
+    for (const body of this.bodies.values()) body.turnTo(side);
+    hair.setDetail(detail, detail < 0.5 ? 2 : 1);
+    hair.update(renderer);
+    hair.seenFrom(camera.position, pixel);
+    hair.litFrom(lights.key, this.shadow.texel);
+    const box = this.lit(hair);
+    renderer.setScissorTest(false);
+    if (!box.isEmpty() && this.hairShown) {
+      const casters = { bodies: this.casters, hairDepth: hair.depthScene, hairLayers: hair.layersScene };
+      this.shadow.update(renderer, lights.key, box, casters);
+    }
+    window();
+    renderer.clear();
+    renderer.render(this.backdrop.scene, camera);
+    renderer.render(this.scene, camera);
+    if (hair.table && this.hairShown) {
+      renderer.render(hair.firstScene, camera);
+      renderer.render(hair.scene, camera);
+    }
+    if (side === "a" && this.guides.shown) {
+      renderer.clearDepth();
+      renderer.render(this.casters, camera);
+      renderer.render(this.guides.scene, camera);
+    }
   }
 
   /** What the key light must cover: the hair, and what it throws shadows on. */
@@ -399,6 +462,15 @@ export class Viewer {
     this.move();
     return true;
   }
+}
+
+/** Vertical field of view of a lens [degrees]. */
+function fieldOfView(focalLength: number): number {
+  return (2 * Math.atan(FILM / 2 / focalLength) * 180) / Math.PI;
+}
+
+function round(value: number, digits: number): number {
+  return Number(value.toFixed(digits));
 }
 
 function drawsInSoftware(): boolean {

@@ -13,6 +13,12 @@ from ringlet.io.space import to_metres
 from ringlet.io.usd.stage import find_prim, reading
 
 
+def camera_paths(path: Path | str) -> list[str]:
+    """Prim paths of the cameras of a stage."""
+    with reading(path) as source:
+        return [str(prim.GetPath()) for prim in source.stage.Traverse() if UsdGeom.Camera(prim)]
+
+
 def read_camera(path: Path | str, prim: str, frame: float | None = None) -> Camera:
     """Reads a ``UsdGeomCamera`` at a frame, by default at the first sample of each value, in metres and Y-up.
 

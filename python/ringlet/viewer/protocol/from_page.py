@@ -8,8 +8,11 @@ from pydantic import Field, TypeAdapter
 
 from ringlet.data import limits
 from ringlet.viewer.protocol.message import File, FrameNumber, Gesture, Id, Message, Place, Position, Row, Shared
+from ringlet.viewer.protocol.review import ReviewMessage
 
 MOST_TEXT = 1_800_000  # characters of a file
+
+PersonName = Annotated[str, Field(max_length=40)]
 
 
 class Hello(Message):
@@ -17,12 +20,29 @@ class Hello(Message):
 
     client: name that the page keeps when it reconnects
     leads:  whether it held the edit lock when it was connected last
+    person: name of the person, as others see it; empty where it is not known
     """
 
     kind: Literal["hello"] = "hello"
     version: Row
     client: str = Field(max_length=64)
     leads: bool = False
+    person: PersonName = ""
+
+
+class Introduce(Message):
+    """Names the person of a page. follows: whether the page shows what the leading page looks at."""
+
+    kind: Literal["introduce"] = "introduce"
+    person: PersonName = ""
+    follows: bool = True
+
+
+class Point(Message):
+    """Position of the leading page's pointer in the scene [m]; None where it is elsewhere."""
+
+    kind: Literal["point"] = "point"
+    at: Position | None
 
 
 class Lead(Message):
@@ -154,11 +174,15 @@ class Restore(Message):
 
 
 class Compare(Message):
-    """Shows a second groom for comparison: a snapshot, the saved one, another recipe of the project, or none."""
+    """Shows another groom on a side: as it is now, as saved, a snapshot, another recipe of the project, or none.
+
+    name: of the recipe, or id of the snapshot
+    """
 
     kind: Literal["compare"] = "compare"
-    to: Literal["now", "saved", "file", "none"]
+    to: Literal["now", "saved", "snapshot", "file", "none"]
     name: str = Field(default="", max_length=240)
+    side: Literal["b", "c", "d"] = "b"
 
 
 class Drag(Message):
@@ -249,6 +273,8 @@ class Watch(Message):
 
 FromPage = Annotated[
     Hello
+    | Introduce
+    | Point
     | Lead
     | Set
     | Arrange
@@ -271,7 +297,11 @@ FromPage = Annotated[
     | Hand
     | Play
     | Against
-    | Watch,
+    | Watch
+    | ReviewMessage,
     Field(discriminator="kind"),
 ]
 FROM_PAGE: TypeAdapter[FromPage] = TypeAdapter(FromPage)
+
+# Messages of presence: the latest of each counts, so that they are neither acknowledged nor sent again.
+PRESENCE = (Introduce, Point, Look)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Literal
 
-from ringlet.viewer.protocol.message import Message, Point
+from ringlet.viewer.protocol.message import Message, Point, Side
 
 
 class Body(Message):
@@ -19,13 +19,13 @@ class Body(Message):
 
 
 class Locks(Message):
-    """Positions of the locks. side: a, or b for the groom to compare with.
+    """Positions of the locks. side: a, or another for a groom to compare with.
 
     ``axis`` (locks, 3) is the reference direction of each lock; ``marked`` is 1 for isolated locks.
     """
 
     kind: Literal["locks"] = "locks"
-    side: Literal["a", "b"]
+    side: Side
     draft: bool
     arrays: ClassVar[dict[str, str]] = {
         "points": "f4",
@@ -65,7 +65,7 @@ class Hairs(Message):
     """
 
     kind: Literal["hairs"] = "hairs"
-    side: Literal["a", "b"]
+    side: Side
     count: int
     points: int
     knots: int
@@ -101,7 +101,7 @@ class Colors(Message):
     """
 
     kind: Literal["colors"] = "colors"
-    side: Literal["a", "b"]
+    side: Side
     stations: int
     roughness: float
     tilt: float

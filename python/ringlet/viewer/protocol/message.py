@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from ringlet.data import limits
 
-VERSION = 8
+VERSION = 10
 
 Place = list[str | int]  # path of a setting in its file: ["shape", 0, "amount"]
 File = Literal["recipe", "shot"]
@@ -19,6 +19,7 @@ Gesture = Annotated[int, Field(ge=-limits.ID, le=limits.ID)]
 FrameNumber = Annotated[float, Field(ge=-limits.FRAME, le=limits.FRAME)]
 Coordinate = Annotated[float, Field(ge=-1e6, le=1e6)]  # [m]
 Position = tuple[Coordinate, Coordinate, Coordinate]
+Side = Literal["a", "b", "c", "d"]  # a look in the picture: the open recipe, and up to three that it is compared with
 
 
 class Message(BaseModel):
@@ -32,17 +33,21 @@ class Shared(Message):
     """How the leading page looks at the groom.
 
     camera: position and target [m], six numbers
+    focal_length: of the lens, for a picture that is 36 mm high [mm]
     light, color, overlay: their choices on the page; empty for none
+    light_turn: angle of the lights about the vertical [degrees]
     file, place: the stage whose settings are shown
     locks:  ids of the chosen locks
     frame:  the frame that is seen; None without a timeline
     """
 
     camera: list[Coordinate] = Field(min_length=6, max_length=6)
+    focal_length: float = Field(default=85.0, ge=10.0, le=500.0)
     light: str = Field(max_length=64)
+    light_turn: float = Field(default=0.0, ge=-360.0, le=360.0)
     color: str = Field(max_length=64)
     overlay: str = Field(max_length=64)
     file: File
     place: Place = Field(max_length=8)
     locks: list[Id] = Field(max_length=10_000)
-    frame: FrameNumber | None
+    frame: FrameNumber | None = None

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Literal
 
-from ringlet.viewer.protocol.message import File, Message, Place, Shared
+from pydantic import Field
+
+from ringlet.viewer.protocol.message import File, Message, Place, Point, Shared, Side
 
 
 class Welcome(Message):
@@ -29,19 +31,43 @@ class Welcome(Message):
     colors: dict[str, tuple[float, float, float, float]]
 
 
-class Role(Message):
-    """Holder of the edit lock.
+class Person(Message):
+    """A person at a connected page.
 
-    others: number of other connected pages
+    hue:     number of their color, from 0
+    leads:   whether their page holds the edit lock
+    follows: whether their page shows what the leading page looks at
+    you:     whether it is the page that receives the message
+    """
+
+    name: str
+    hue: int
+    leads: bool
+    follows: bool
+    you: bool
+
+
+class Role(Message):
+    """Holder of the edit lock, and the people at the connected pages.
+
     asked:  whether another page asks this one for the lock
+    asking: name of the person who asks this page; empty for none
     asks:   whether this page waits for the answer
     """
 
     kind: Literal["role"] = "role"
     leads: bool
-    others: int
     asked: bool = False
+    asking: str = ""
     asks: bool = False
+    people: list[Person]
+
+
+class Pointer(Message):
+    """Position of the leading page's pointer in the scene [m]; None where it is elsewhere."""
+
+    kind: Literal["pointer"] = "pointer"
+    at: Point | None
 
 
 class Followed(Shared):
@@ -125,10 +151,18 @@ class Timeline(Message):
 
 
 class Compared(Message):
-    """Name of the groom or cache to compare with; empty for none."""
+    """A look that is compared; ``a`` is the open recipe.
+
+    name:     of the groom or cache; empty for none
+    detail:   author and time of a snapshot
+    settings: those that its recipe sets, in the notation of TOML; empty for a cache
+    """
 
     kind: Literal["compared"] = "compared"
+    side: Side
     name: str
+    detail: str = ""
+    settings: dict[str, str] = Field(default_factory=dict)
 
 
 class Heard(Message):

@@ -18,9 +18,14 @@ template <class T> inline T stretch_energy(T length, T rest_length, T stiffness)
     return 0.5 * stiffness * w * w;
 }
 
+// The factor of I − t tᵀ, clamped [N/m].
+template <class T> inline T stretch_across(T length, T rest_length, T stiffness) {
+    return max(stiffness * ((length - rest_length) / length), T{});
+}
+
 template <class T> inline Stretch<T> stretch(Vec<T> tangent, T length, T rest_length, T stiffness) {
     const T w = length - rest_length;
-    return {(stiffness * w) * tangent, stiffness, max(stiffness * (w / length), T{})};
+    return {(stiffness * w) * tangent, stiffness, stretch_across(length, rest_length, stiffness)};
 }
 
 } // namespace ringlet::RINGLET_SIMD

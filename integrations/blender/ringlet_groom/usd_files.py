@@ -13,13 +13,11 @@ from pathlib import Path
 import bpy
 import numpy as np
 
+from .refused import Refused
+
 PATH = "ringlet_path"  # custom property: the prim that an object came from
 CACHE = "Ringlet cache"  # the modifier that plays
 MARGIN = 1e-4  # of texture coordinates
-
-
-class Refused(Exception):
-    """What a user can mend, in one line."""
 
 
 @dataclass

@@ -1,0 +1,121 @@
+"""Meshes of Blender as arrays: rest pose, texture coordinates, vertex groups, and the motion through frames."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from hashlib import blake2b
+from typing import Any
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+
+from .refused import Refused
+
+# Modifiers that change the topology. Ringlet wants the points of the mesh itself, moved by the others.
+GENERATING = {"SUBSURF", "MULTIRES", "MIRROR", "ARRAY", "SOLIDIFY", "BEVEL", "DECIMATE", "REMESH", "TRIANGULATE"}
+IN_REGION = 0.5  # mean weight of a face that belongs to the region of a vertex group
+
+Arrays = dict[str, np.ndarray]
+
+
+def identifier(name: str) -> str:
+    """A name as USD and recipes take it: ``Scalp area`` is ``Scalp_area``."""
+    valid = re.sub(r"\W", "_", name, flags=re.ASCII)
+    return valid if re.match(r"[A-Za-z_]", valid) else f"_{valid}"
+
+
+def rest_arrays(thing: bpy.types.Object, matrix: Matrix) -> Arrays:
+    """A mesh in its rest pose: without modifiers and shape keys, transformed by a matrix.
+
+    ``points`` (n, 3), ``counts``, ``indices``, ``uv`` (corners, 2) of the active map, and for each vertex group
+    ``map/NAME`` (n,) and ``region/NAME``, the faces of it.
+    """
+    mesh = thing.data
+    if not len(mesh.polygons):
+        raise Refused(f"{thing.name}: has no faces; choose a mesh with a surface")
+    counts, indices = np.empty(len(mesh.polygons), np.int32), np.empty(len(mesh.loops), np.int32)
+    mesh.polygons.foreach_get("loop_total", counts)
+    mesh.loops.foreach_get("vertex_index", indices)
+    arrays = {"points": _transformed(_positions(mesh), matrix), "counts": counts, "indices": indices}
+    if mesh.uv_layers.active:
+        uv = np.empty(2 * len(indices), np.float32)
+        mesh.uv_layers.active.uv.foreach_get("vector", uv)
+        arrays["uv"] = uv.reshape(-1, 2)
+    starts = np.concatenate([[0], np.cumsum(counts)[:-1]])
+    for name, weights in _vertex_groups(thing).items():
+        arrays[f"map/{name}"] = weights
+        faces = np.add.reduceat(weights[indices], starts) / counts
+        inside = np.flatnonzero(faces > IN_REGION)
+        if inside.size:
+            arrays[f"region/{name}"] = inside.astype(np.int32)
+    return arrays
+
+
+def is_subdivided(thing: bpy.types.Object) -> bool:
+    """Whether a mesh is the cage of a Catmull-Clark surface."""
+    return any(one.type == "SUBSURF" and one.subdivision_type == "CATMULL_CLARK" for one in thing.modifiers)
+
+
+def fingerprint(arrays: Arrays) -> str:
+    """A digest of arrays."""
+    found = blake2b(digest_size=16)
+    for name in sorted(arrays):
+        found.update(f"{name} {arrays[name].shape}".encode())
+        found.update(np.ascontiguousarray(arrays[name]).data)
+    return found.hexdigest()
+
+
+@contextmanager
+def without_generators(things: list[bpy.types.Object]) -> Iterator[None]:
+    """Switches off modifiers that change the topology while the block runs."""
+    switched = [one for thing in things for one in thing.modifiers if one.type in GENERATING and one.show_viewport]
+    for one in switched:
+        one.show_viewport = False
+    try:
+        yield
+    finally:
+        for one in switched:
+            one.show_viewport = True
+
+
+def posed_points(thing: bpy.types.Object) -> np.ndarray:
+    """Points of a mesh in world space at the current frame, shape (n, 3), with the modifiers that are on."""
+    seen = thing.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    if len(seen.data.vertices) != len(thing.data.vertices):
+        raise Refused(
+            f"{thing.name}: its modifiers change {len(thing.data.vertices)} vertices to {len(seen.data.vertices)}; "
+            "apply or switch off those that do"
+        )
+    return _transformed(_positions(seen.data), seen.matrix_world)
+
+
+def message(things: list[tuple[bpy.types.Object, Arrays]]) -> tuple[list[dict[str, Any]], Arrays]:
+    """Descriptions and arrays of meshes for the request ``write_meshes``."""
+    described = [{"name": identifier(thing.name), "subdivided": is_subdivided(thing)} for thing, _ in things]
+    arrays = {f"{k}/{name}": values for k, (_, own) in enumerate(things) for name, values in own.items()}
+    return described, arrays
+
+
+def _positions(mesh: bpy.types.Mesh) -> np.ndarray:
+    points = np.empty(3 * len(mesh.vertices), np.float32)
+    mesh.vertices.foreach_get("co", points)
+    return points.reshape(-1, 3)
+
+
+def _transformed(points: np.ndarray, matrix: Matrix) -> np.ndarray:
+    placed = np.array(matrix, np.float64)
+    return (points @ placed[:3, :3].T + placed[:3, 3]).astype(np.float32)
+
+
+def _vertex_groups(thing: bpy.types.Object) -> Arrays:
+    names = [identifier(group.name) for group in thing.vertex_groups]
+    weights = np.zeros((len(names), len(thing.data.vertices)), np.float32)
+    if names:
+        for vertex in thing.data.vertices:
+            for member in vertex.groups:
+                if member.group < len(names):
+                    weights[member.group, vertex.index] = member.weight
+    return dict(zip(names, weights, strict=True))

@@ -1,0 +1,263 @@
+"""Shots of heads: frames of the scene are sent to Ringlet, simulated there, and played as a cache.
+
+Frames are evaluated one at a time from the timer, so that Blender stays usable meanwhile.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+
+from . import grooming, meshes
+from .properties import Document, scale
+from .refused import Refused
+from .session import Request, session
+
+COLLIDERS, CLOTH, CACHE, HAIR = "colliders.usdc", "cloth.usdc", "cache.usdc", "hair.usdc"
+PIN = "pin"  # vertex group of cloth that is held
+MODIFIER = "Ringlet cache"
+STARTING_SHOT = """# How the hair of {head} moves. SI units; all settings: ringlet schema shot.
+ringlet = 1
+groom = "{recipe}"
+frames = [1, 24]
+preroll = 12          # frames for the hair to hang before the first
+
+[strands]
+damping = 0.004       # s; how soon a bounce dies away
+drag = 2e-5           # kg/(m s)
+bend_scale = 6        # a lock is stiffer than one of its hairs
+
+[contact]             # with the head and the colliders
+radius = 4e-4         # m
+friction = 0.3
+"""
+
+
+@dataclass
+class Run:
+    """A shot in progress.
+
+    bodies: what moves: the head, then colliders and cloth; with their points of each frame so far
+    files:  of those, by the name of the file
+    """
+
+    head: str
+    frames: tuple[int, int]
+    resume: bool
+    files: dict[str, list[bpy.types.Object]]
+    points: dict[str, list[np.ndarray]] = field(default_factory=dict)
+    next_frame: int = 0
+    before: int = 0
+    request: int = 0
+
+
+@dataclass
+class Shots:
+    """The state of simulation for the panel: what it does and how far, the last error, notes of the last run, and
+    the steps that a canceled one can go on from."""
+
+    run: Run | None = None
+    stage: str = ""
+    part: float = 0.0
+    message: str = ""
+    notes: list[str] = field(default_factory=list)
+    left: int = 0
+
+
+shots = Shots()
+
+
+def begin_text(head: bpy.types.Object) -> None:
+    """Gives a head a shot to start from."""
+    own = head.ringlet
+    if own.shot is None:
+        own.shot = bpy.data.texts.new(f"{head.name}.shot.toml")
+        own.shot.from_string(STARTING_SHOT.format(head=head.name, recipe=own.recipe.name))
+
+
+def start(head: bpy.types.Object, *, resume: bool = False) -> None:
+    """Begins a simulation of the frames of the scene. Raises Refused for what cannot be simulated."""
+    if shots.run is not None:
+        raise Refused("A simulation runs already; cancel it first")
+    if not bpy.data.filepath:
+        raise Refused("The .blend has no file yet; save it first, since simulated frames are kept next to it")
+    scene = bpy.context.scene
+    files = {grooming.HEAD: [head], COLLIDERS: _meshes(head, "colliders"), CLOTH: _meshes(head, "cloth")}
+    begin_text(head)
+    # Roots take over the motion that they have from the frame before the first.
+    run = Run(head.name_full, (scene.frame_start, scene.frame_end), resume, files)
+    run.next_frame, run.before = scene.frame_start - 1, scene.frame_current
+    shots.run, shots.message, shots.notes, shots.stage, shots.part = run, "", [], "Reading the scene", 0.0
+
+
+def cancel() -> None:
+    """Cancels the simulation; the frames that are done are kept, to go on from."""
+    if shots.run is None:
+        return
+    if shots.run.request:
+        session.cancel(shots.run.request)
+    else:
+        _end("canceled")
+
+
+def advance() -> None:
+    """Reads the next frame of a simulation that is being prepared; called by the timer."""
+    run = shots.run
+    if run is None or run.request or shots.stage != "Reading the scene":
+        return
+    first, last = run.frames
+    try:
+        if run.next_frame <= last:
+            _read_frame(run)
+            shots.part = (run.next_frame - first + 1) / (last - first + 2)
+        else:
+            bpy.context.scene.frame_set(run.before)
+            _send(run)
+    except (Refused, ReferenceError) as error:
+        _end(str(error) if isinstance(error, Refused) else "A mesh of the shot was removed; simulate again")
+
+
+def _read_frame(run: Run) -> None:
+    things = [thing for own in run.files.values() for thing in own]
+    with meshes.without_generators(things):
+        bpy.context.scene.frame_set(run.next_frame)
+        for thing in things:
+            run.points.setdefault(thing.name_full, []).append(meshes.posed_points(thing))
+    run.next_frame += 1
+
+
+def _send(run: Run) -> None:
+    head = bpy.data.objects[run.head]
+    folder, scene = str(grooming.folder_of(head)), bpy.context.scene
+    space = {"up_axis": "Z", "meters_per_unit": scale(), "fps": scene.render.fps / scene.render.fps_base}
+    failed = Request(lambda _: None, _end)
+    for file, things in run.files.items():
+        if not things:
+            continue
+        bodies = []
+        for thing in things:
+            rest = grooming.rest_matrix(head) if thing is head else Matrix(thing.matrix_world)
+            arrays = meshes.rest_arrays(thing, rest)
+            bodies.append((thing, {**arrays, "motion": np.stack(run.points[thing.name_full])}))
+        described, arrays = meshes.message(bodies)
+        sent = {"file": file, "meshes": described, "first_frame": run.frames[0] - 1, **space}
+        session.send("write_meshes", failed, arrays, folder=folder, **sent)
+    grooming.state_of(head).sent.pop(grooming.HEAD, None)  # now it moves; the groom is of the same rest pose
+    run.points.clear()
+    request = Request(
+        done=lambda message: _done(message.header),
+        failed=_end,
+        progress=_progress,
+        warned=shots.notes.append,
+        canceled=lambda message: _end("canceled", message.header.get("left", 0)),
+    )
+    shots.stage = "Starting"
+    texts = {"recipe": grooming.recipe_message(head), "shot": shot_message(head, run)}
+    run.request = session.send("simulate", request, folder=folder, cache=CACHE, resume=run.resume, **texts)
+
+
+def shot_message(head: bpy.types.Object, run: Run | None = None) -> dict:
+    """The shot of a head, with the frames of the scene and the collections of the panel, as Ringlet takes it."""
+    document, own, scene = Document(head, "shot"), head.ringlet, bpy.context.scene
+    frames = run.frames if run else (scene.frame_start, scene.frame_end)
+    text = document.text
+    if _meshes(head, "colliders"):
+        text += f'\n[[collider]]\n\n[[collider]]\nfile = "{COLLIDERS}"\n'
+    for thing in _meshes(head, "cloth"):
+        text += f'\n[[cloth]]\nfile = "{CLOTH}"\nmesh = "/scene/{meshes.identifier(thing.name)}"\n'
+        if PIN in thing.vertex_groups:
+            text += f'\n[[cloth.pin]]\nmap = "{PIN}"\nstiffness = 100\n'
+    overlay = [{"set": ["frames"], "value": list(frames)}, {"set": ["groom"], "value": own.recipe.name}]
+    return {
+        "name": own.shot.name,
+        "text": text,
+        "changes": json.loads(document.changes or "[]"),
+        "overlay": overlay,
+    }
+
+
+def _meshes(head: bpy.types.Object, collection: str) -> list[bpy.types.Object]:
+    found = getattr(head.ringlet, collection)
+    return [thing for thing in found.all_objects if thing.type == "MESH" and thing is not head] if found else []
+
+
+def _progress(stage: str, done: int, total: int) -> None:
+    shots.stage, shots.part = stage, done / max(total, 1)
+
+
+def _end(line: str, left: int = 0) -> None:
+    shots.run, shots.stage, shots.part, shots.left = None, "", 0.0, left
+    shots.message = "" if line == "canceled" else line
+
+
+def _done(header: dict) -> None:
+    head = bpy.data.objects.get(shots.run.head) if shots.run else None
+    _end("")
+    shots.notes = header["notes"]
+    if head is not None:
+        play(head, "lock_curves", "lock_motion", Path(header["path"]), "/groom/locks")
+
+
+def bake(head: bpy.types.Object) -> None:
+    """Writes the hairs of the simulated shot to a USD file, and plays them. Raises Refused without a shot."""
+    folder = grooming.folder_of(head)
+    if not (folder / CACHE).is_file():
+        raise Refused(f"{folder / CACHE}: there is no simulated shot yet; simulate first")
+    if shots.run is not None:
+        raise Refused("A simulation runs; wait for it or cancel it")
+    run = Run(head.name_full, (0, 0), False, {})
+    shots.run, shots.message, shots.stage = run, "", "Hairs"
+
+    def done(message) -> None:
+        head = bpy.data.objects.get(run.head)
+        _end("")
+        if head is not None and head.ringlet.hair_curves is not None:
+            play(head, "hair_curves", "hair_motion", Path(message.header["path"]), "/groom/hairs")
+
+    request = Request(done, _end, progress=_progress, canceled=lambda _: _end("canceled"))
+    fraction = head.ringlet.fraction if head.ringlet.show_hairs else 1.0
+    run.request = session.send("hairs", request, folder=str(folder), cache=CACHE, file=HAIR, fraction=fraction)
+
+
+def play(head: bpy.types.Object, still: str, moving: str, path: Path, prim: str) -> None:
+    """Shows curves that follow a cache, in place of those that stand still."""
+    clear(head, moving)
+    source = getattr(head.ringlet, still)
+    if source is None:
+        return
+    thing = bpy.data.objects.new(f"{source.name} simulated", source.data.copy())
+    thing.data.surface = None
+    for collection in head.users_collection or [bpy.context.scene.collection]:
+        collection.objects.link(thing)
+    known = set(bpy.data.cache_files)
+    bpy.ops.cachefile.open(filepath=str(path))
+    modifier = thing.modifiers.new(MODIFIER, "MESH_SEQUENCE_CACHE")
+    modifier.cache_file = next(file for file in bpy.data.cache_files if file not in known)
+    modifier.object_path = prim
+    setattr(head.ringlet, moving, thing)
+    show_motion(head)
+
+
+def show_motion(head: bpy.types.Object) -> None:
+    """Shows the finest curves there are: simulated before still ones, hairs before locks."""
+    own = head.ringlet
+    order = [own.hair_motion, own.lock_motion, own.hair_curves, own.lock_curves, own.guide_curves]
+    there = [thing for thing in order if thing is not None]
+    for thing in there:
+        thing.hide_viewport = thing.hide_render = thing is not there[0]
+
+
+def clear(head: bpy.types.Object, moving: str) -> None:
+    """Removes curves that follow a cache; the cache stays on disk."""
+    if (thing := getattr(head.ringlet, moving)) is not None:
+        files = [one.cache_file for one in thing.modifiers if one.type == "MESH_SEQUENCE_CACHE" and one.cache_file]
+        grooming.remove(thing)
+        for file in files:
+            if not file.users:
+                bpy.data.cache_files.remove(file)
+    show_motion(head)

@@ -1,0 +1,288 @@
+"""Runs in the Python of Blender: installs the extension, works with it as its buttons do, and writes what it found.
+
+in_blender_extension.py FOUND.json EXTENSION.zip ACTION FOLDER
+"""
+
+from __future__ import annotations
+
+import importlib
+import json
+import os
+import signal
+import sys
+import time
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+MODULE = "bl_ext.user_default.ringlet_groom"
+LOOK = """
+ringlet = 1
+seed = 3
+
+[guides] # a cap of curls
+count = 14
+length = 5
+
+[locks]
+count = 24
+points = 90
+
+[curl]
+width = 1.0
+pitch = 1.5
+
+[hairs]
+per_lock = 4
+
+[color]
+preset = "brown"
+"""
+
+
+def of(name: str):
+    """A module of the extension."""
+    return importlib.import_module(f"{MODULE}.{name}")
+
+
+def wait(until, seconds: float = 120.0) -> None:
+    """Runs the timer of the extension, which Blender runs only with a window, until a condition holds."""
+    end = time.monotonic() + seconds
+    while not until():
+        if time.monotonic() > end:
+            raise TimeoutError(str([vars(one) for one in of("grooming").states.values()]) + str(of("shots").shots))
+        bpy.context.view_layer.update()
+        of("timer").tick()
+        time.sleep(0.02)
+
+
+def settled() -> bool:
+    """Whether every groom is up to date, or its error is reported."""
+    grooming = of("grooming")
+    return all(
+        not (state := grooming.state_of(head)).busy
+        and (grooming.is_made(head, key := grooming.key_of(head)) or (bool(state.message) and state.asked == key))
+        for head in grooming.heads()
+    )
+
+
+def make_head() -> bpy.types.Object:
+    """A ball of 18 cm with a vertex group on its upper half."""
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=16, ring_count=8, radius=0.09)
+    head = bpy.context.active_object
+    head.name = "Kim"
+    group = head.vertex_groups.new(name="scalp")
+    group.add([v.index for v in head.data.vertices if v.co.z > -0.01], 1.0, "REPLACE")
+    return head
+
+
+def begin() -> bpy.types.Object:
+    """A head with a groom."""
+    head = make_head()
+    of("grooming").begin(head, LOOK, "Kim")
+    wait(settled)
+    return head
+
+
+def points(thing: bpy.types.Object) -> np.ndarray:
+    """Points of curves in world space, in the current frame."""
+    seen = thing.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    values = np.empty(3 * len(seen.data.points), np.float32)
+    seen.data.attributes["position"].data.foreach_get("vector", values)
+    matrix = np.array(seen.matrix_world)
+    return values.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+def size(head: bpy.types.Object) -> float:
+    """How far the guides reach from the middle of the head [m]."""
+    return float(np.linalg.norm(points(head.ringlet.guide_curves), axis=1).max())
+
+
+def slider(_folder: Path) -> dict:
+    """A groom from scratch; a slider, its undo and redo, and a value that Ringlet refuses."""
+    bpy.ops.ed.undo_push(message="scene")
+    head = begin()
+    own = head.ringlet
+    found = {
+        "message": of("grooming").state_of(head).message,
+        "counts": of("grooming").state_of(head).counts,
+        "curves": [
+            len(own.guide_curves.data.curves),
+            len(own.lock_curves.data.curves),
+            len(own.hair_curves.data.curves),
+        ],
+        "surface": own.hair_curves.data.surface.name,
+        "roots": float(np.abs(np.linalg.norm(points(own.lock_curves)[::90], axis=1) - 0.09).max()),
+        "lowest root": float(points(own.lock_curves)[::90, 2].min()),
+        "length": own.recipe_guides.length__value,
+        "before": size(head),
+        "material": own.hair_curves.data.materials[0].node_tree.nodes["Ringlet hair"].parametrization,
+    }
+    bpy.ops.ed.undo_push(message="groomed")
+    own.recipe_guides.length__value = 0.1
+    bpy.ops.ed.undo_push(message="length")
+    wait(settled)
+    found |= {"after": size(head), "text": own.recipe.as_string(), "changes": own.recipe.ringlet_changes}
+    bpy.ops.ed.undo()
+    head = bpy.data.objects["Kim"]
+    wait(settled)
+    found |= {"undone": size(head), "undone length": head.ringlet.recipe_guides.length__value}
+    bpy.ops.ed.redo()
+    head = bpy.data.objects["Kim"]
+    wait(settled)
+    found["redone"] = size(head)
+    head.ringlet.recipe_curl.width__value = 50.0
+    wait(settled)
+    found["refused"] = of("grooming").state_of(head).message
+    found["kept"] = size(head)
+    head.ringlet.recipe_curl.width__value = 0.01
+    wait(settled)
+    found["mended"] = of("grooming").state_of(head).message
+    return found
+
+
+def stored(folder: Path) -> dict:
+    """The .blend, saved and opened again; then opened without the extension."""
+    head = begin()
+    head.ringlet.recipe_guides.length__value = 0.1
+    wait(settled)
+    found, path = {"before": size(head)}, str(folder / "scene.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    head = bpy.data.objects["Kim"]
+    wait(lambda: bool(of("properties").Document(head, "recipe").settings) and settled())
+    found |= {"after": size(head), "length": head.ringlet.recipe_guides.length__value}
+    head.ringlet.recipe_guides.length__value = 0.05
+    wait(settled)
+    found["slider"] = size(head)
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.preferences.addon_disable(module=MODULE)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    found["property"] = hasattr(bpy.data.objects["Kim"], "ringlet")
+    found["left"] = {thing.name: len(thing.data.curves) for thing in bpy.data.objects if thing.type == "CURVES"}
+    found["recipe"] = [text.as_string() for text in bpy.data.texts if "recipe" in text.name]
+    return found
+
+
+def shot(folder: Path) -> dict:
+    """A shot of a head that slides: canceled, resumed and played, and its hairs baked."""
+    head = begin()
+    shots = of("shots")
+    found = {"unsaved": refused(bpy.ops.ringlet.simulate)}
+    bpy.ops.wm.save_as_mainfile(filepath=str(folder / "scene.blend"))
+    scene = bpy.context.scene
+    scene.frame_start, scene.frame_end = 1, 4
+    for frame in (1, 4):
+        head.location.x = 0.01 * frame
+        head.keyframe_insert("location", frame=frame)
+    scene.frame_set(1)
+    wait(settled)
+    shots.begin_text(head)
+    head.ringlet.shot.ringlet_changes = json.dumps([{"set": ["preroll"], "value": 2}])
+    floor = bpy.data.collections.new("floor")
+    bpy.ops.mesh.primitive_plane_add(size=1.0, location=(0, 0, -0.2))
+    scene.collection.children.link(floor)
+    floor.objects.link(bpy.context.active_object)
+    head.ringlet.colliders = floor
+    bpy.context.view_layer.objects.active = head
+    bpy.ops.ringlet.simulate()
+    wait(lambda: shots.shots.stage == "frames" or shots.shots.run is None)
+    found["stage"] = shots.shots.stage
+    bpy.ops.ringlet.cancel()
+    wait(lambda: shots.shots.run is None)
+    found |= {"left": shots.shots.left, "canceled": shots.shots.message}
+    bpy.ops.ringlet.simulate(resume=bool(shots.shots.left))
+    wait(lambda: shots.shots.run is None)
+    found |= {"message": shots.shots.message, "notes": shots.shots.notes}
+    bpy.ops.ringlet.bake()
+    wait(lambda: shots.shots.run is None)
+    found["baked"] = shots.shots.message
+    for name in ("lock_motion", "hair_motion"):
+        thing, roots = getattr(head.ringlet, name), []
+        steps = np.concatenate([[0], np.cumsum(of("curves").counts_of(thing.data))[:-1]])
+        for frame in (1, 4):
+            scene.frame_set(frame)
+            roots.append(points(thing)[steps])
+        found[name] = (roots[1] - roots[0]).mean(axis=0).tolist()
+    bpy.ops.ringlet.clear_motion()
+    found["cleared"] = [len(bpy.data.cache_files), head.ringlet.hair_curves.hide_viewport]
+    return found
+
+
+def killed(_folder: Path) -> dict:
+    """A process that is killed: a line in the panel, and another process with the next change."""
+    head = begin()
+    session, state = of("session").session, of("grooming").state_of(head)
+    pid = session._process.pid
+    os.kill(pid, signal.SIGKILL)
+    time.sleep(0.3)
+    head.ringlet.recipe_guides.length__value = 0.1
+    wait(settled)
+    found = {"another": session._process.pid != pid, "message": state.message, "size": size(head)}
+    session.stop()
+    os.environ["PATH"] = "/nowhere"
+    head.ringlet.recipe_guides.length__value = 0.08
+    wait(lambda: bool(state.message))
+    found["missing"] = state.message
+    return found
+
+
+def guides(_folder: Path) -> dict:
+    """Sculpted guides, a vertex group as a map, operators, and a variant."""
+    head = begin()
+    own = head.ringlet
+    found = {"before": size(head)}
+    bpy.ops.ringlet.sculpt_guides()
+    drawn = own.guides
+    tips = np.empty(3 * len(drawn.data.points), np.float32)
+    drawn.data.attributes["position"].data.foreach_get("vector", tips)
+    tips = tips.reshape(14, -1, 3)
+    tips[:, 1:] = tips[:, :1] + 1.5 * (tips[:, 1:] - tips[:, :1])
+    drawn.data.attributes["position"].data.foreach_set("vector", tips.ravel())
+    drawn.data.update_tag()
+    of("grooming").forget(drawn.name)
+    wait(settled)
+    found |= {"sculpted": size(head), "text": own.recipe.as_string(), "message": of("grooming").state_of(head).message}
+    own.guides = None
+    bpy.ops.ringlet.add_operator(op="frizz")
+    wait(settled)
+    found |= {"grown": size(head), "operators": [row.op for row in own.shape]}
+    own.shape[0].frizz.amount__value = 0.004
+    wait(settled)
+    found["amount"] = own.shape[0].frizz.amount__value
+    bpy.ops.ringlet.change_operator(row=0, what="remove")
+    wait(settled)
+    found["removed"] = [row.op for row in own.shape]
+    own.recipe_guides.length__map = "scalp"
+    wait(settled)
+    found["map"] = of("grooming").state_of(head).message
+    bpy.ops.ringlet.new_variant()
+    own.recipe_curl.width__value = 0.02
+    wait(settled)
+    bpy.ops.ringlet.export()
+    state = of("grooming").state_of(head)
+    wait(lambda: state.message.startswith("Wrote"))
+    found["written"] = state.message.removeprefix("Wrote ")
+    return found
+
+
+def refused(operator, **settings) -> str:
+    """The error message of an operator, empty on success."""
+    try:
+        operator(**settings)
+    except RuntimeError as error:
+        return str(error)
+    return ""
+
+
+def main(extension: str, action: str, folder: str) -> dict:
+    """Installs the extension and performs an action."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.extensions.package_install_files(filepath=extension, repo="user_default", enable_on_install=True)
+    found = {"slider": slider, "stored": stored, "shot": shot, "killed": killed, "guides": guides}[action](Path(folder))
+    return found
+
+
+if __name__ == "__main__":
+    Path(sys.argv[1]).write_text(json.dumps(main(*sys.argv[2:])))

@@ -1,0 +1,152 @@
+"""The Blender extension: what of it needs no Blender, and its work in Blender as its buttons do it."""
+
+from __future__ import annotations
+
+import sys
+import zipfile
+from pathlib import Path
+
+import blender
+import numpy as np
+import pytest
+from ringlet.data.pigment import absorption
+
+import ringlet
+
+needs_blender = pytest.mark.skipif(not blender.PYTHON.exists(), reason=blender.MISSING)
+edited_text = blender.load(blender.EXTENSION / "edited_text.py")
+
+
+@pytest.fixture(scope="module")
+def extension(tmp_path_factory) -> Path:
+    return blender.build_extension(tmp_path_factory.mktemp("extension"))
+
+
+@pytest.fixture(scope="module")
+def schema(extension):
+    """The module ``schema`` of the built extension."""
+    with zipfile.ZipFile(extension) as file:
+        file.extractall(extension.parent / "ringlet_groom")
+    return blender.load(extension.parent / "ringlet_groom/schema.py")
+
+
+@pytest.fixture
+def act(extension, tmp_path):
+    """Works in Blender with the extension installed; ``ringlet`` is on the PATH."""
+    folder = tmp_path / "work"
+    folder.mkdir()
+    ringlet_folder = str(Path(sys.executable).parent)
+
+    def acted(action: str) -> dict:
+        return blender.run(
+            "in_blender_extension.py",
+            tmp_path / "found.json",
+            extension,
+            action,
+            folder,
+            PATH=ringlet_folder,
+            OMP_NUM_THREADS="1",
+            BLENDER_USER_RESOURCES=str(tmp_path / "user"),
+        )
+
+    return acted
+
+
+def test_of_several_changes_of_a_setting_the_last_stays():
+    changes = ""
+    for value in (1.0, 1.1, 1.2):
+        changes = edited_text.with_change(changes, {"set": ["curl", "width", "value"], "value": value})
+    changes = edited_text.with_change(changes, {"set": ["seed"], "value": 4})
+    assert edited_text.pending(changes, ("curl", "width", "value")) == 1.2
+    assert len(edited_text.json.loads(changes)) == 2
+    assert edited_text.pending(changes, ("curl", "pitch", "value")) is edited_text.MISSING
+
+
+def test_changes_before_a_move_of_operators_keep_their_rows():
+    changes = edited_text.with_change("", {"set": ["shape", 0, "amount"], "value": 1})
+    changes = edited_text.with_change(changes, {"move": "shape", "at": 0, "to": 1})
+    changes = edited_text.with_change(changes, {"set": ["shape", 0, "amount"], "value": 2})
+    assert len(edited_text.json.loads(changes)) == 3
+    assert edited_text.pending(changes, ("shape", 0, "amount")) == 2
+    assert edited_text.pending(changes, ("shape", 1, "amount")) is edited_text.MISSING
+
+
+def test_every_value_of_a_recipe_is_a_setting_with_its_bounds(schema):
+    settings = {one.place: one for one in schema.sections("recipe")["curl"][1]}
+    width = settings["width", "value"]
+    assert (width.kind, width.unit, width.least, width.most) == ("number", "m", 0.0, 0.2)
+    assert settings["width", "ramp"].of == ("width", "value")
+    assert settings["preset",].choices[:3] == ("", "1", "2A")
+    numbers = [name for name, one in ringlet.schema()["recipe"]["$defs"]["Curl"]["properties"].items() if "unit" in one]
+    places = {place[0] for place in settings}
+    assert set(numbers) <= places
+    assert {"braid", "clump", "frizz", "tie"} <= schema.operators().keys()
+    assert [one for one in schema.operators()["clump"][1] if one.place == ("amount", "value")]
+
+
+def test_the_pigments_of_cycles_absorb_as_those_of_ringlet():
+    """Absorption of Cycles for concentrations of eumelanin and pheomelanin, from its source."""
+    source = (blender.EXTENSION / "material.py").read_text().replace("import bpy\n", "").split("def with_pigments")[0]
+    module: dict = {}
+    exec(source, module)
+    melanin, redness = np.array([0.1, 0.5, 0.9, 0.99]), np.array([0.0, 0.3, 0.9, 0.1])
+    ours, red = module["cycles_melanin"](melanin, redness)
+    amount = -np.log(1.0 - ours.astype(np.float64))[:, None]
+    dark, reddish = amount * (1.0 - red[:, None]), amount * red[:, None]
+    cycles = dark * [0.506, 0.841, 1.653] + reddish * [0.343, 0.733, 1.924]
+    np.testing.assert_allclose(cycles, absorption(melanin, redness), rtol=5e-3)
+
+
+@needs_blender
+def test_a_groom_from_scratch_follows_a_slider_undo_and_redo(act):
+    found = act("slider")
+    assert found["message"] == "" and found["counts"]["locks"] == 24
+    assert found["curves"] == [14, 24, found["counts"]["hairs"]]
+    assert found["surface"] == "Kim" and found["material"] == "MELANIN"
+    assert found["roots"] < 0.005 and found["lowest root"] > -0.01  # on the facets of the vertex group
+    assert found["length"] == pytest.approx(0.05) and found["after"] > found["before"] + 0.03
+    assert "length = 10" in found["text"] and "# a cap of curls" in found["text"] and found["changes"] == ""
+    assert found["undone"] == pytest.approx(found["before"], abs=1e-6)
+    assert found["undone length"] == pytest.approx(0.05)
+    assert found["redone"] == pytest.approx(found["after"], abs=1e-6)
+    assert "curl.width is 50 m; must be at most 0.2 m" in found["refused"]
+    assert found["kept"] == pytest.approx(found["after"], abs=1e-6) and found["mended"] == ""
+
+
+@needs_blender
+def test_a_groom_is_there_after_save_and_reload_and_without_the_extension(act):
+    found = act("stored")
+    assert found["after"] == pytest.approx(found["before"], abs=1e-6) and found["length"] == pytest.approx(0.1)
+    assert found["slider"] < found["before"] - 0.03
+    assert not found["property"]
+    assert found["left"]["Kim locks"] == 24 and found["left"]["Kim guides"] == 14
+    assert "length = 5" in found["recipe"][0]
+
+
+@needs_blender
+def test_a_shot_is_canceled_resumed_played_and_baked(act):
+    found = act("shot")
+    assert "Save the .blend first" in found["unsaved"] or "save it first" in found["unsaved"]
+    assert found["canceled"] == "" and found["message"] == "" and found["baked"] == ""
+    for name in ("lock_motion", "hair_motion"):
+        np.testing.assert_allclose(found[name], [0.03, 0, 0], atol=1e-4)
+    assert found["cleared"] == [0, False]
+
+
+@needs_blender
+def test_a_killed_process_is_started_again_and_a_missing_one_is_a_line(act):
+    found = act("killed")
+    assert found["another"] and found["message"] == "" and found["size"] > 0.17
+    assert "not installed" in found["missing"]
+
+
+@needs_blender
+def test_sculpted_guides_maps_operators_and_variants(act):
+    found = act("guides")
+    assert found["sculpted"] > found["before"] + 0.015 and found["message"] == ""
+    assert "guides.usdc" not in found["text"]  # the panel says where guides come from
+    assert found["grown"] == pytest.approx(found["before"], abs=1e-6)
+    assert found["operators"] == ["frizz"] and found["removed"] == []
+    assert found["amount"] == pytest.approx(0.004) and found["map"] == ""
+    variant = ringlet.read_groom(found["written"], variant="Kim")
+    assert len(variant.locks) == 24

@@ -1,0 +1,165 @@
+// Finds settings of all stages by label, file name and description, and jumps to the one that is chosen.
+
+import "./search.css";
+import { h } from "../dom";
+import { at, type File, type Model, type Place } from "../model";
+import type { Json } from "../protocol";
+import { bindKey, plainKey } from "./keys";
+import { Schemas, type Setting } from "./schema";
+
+const MOST = 40; // results that are listed
+const SHOT_TABLES = ["strands", "variation", "solver", "forces", "contact"];
+
+/** A setting of a stage; `inner` is one in its table. */
+interface Found {
+  file: File;
+  place: Place;
+  stage: string;
+  setting: Setting;
+  inner: Setting | null;
+  rank: number;
+}
+
+export class SettingSearch {
+  readonly input = h("input", {
+    type: "search",
+    class: "search",
+    placeholder: "Search settings  ( / )",
+    "aria-label": "Search settings",
+    autocomplete: "off",
+    role: "combobox",
+    "aria-expanded": "false",
+    "aria-controls": "search-results",
+  });
+  readonly results = h("ul", { class: "search-results", id: "search-results", role: "listbox", "aria-label": "Settings found", hidden: true });
+  private found: Found[] = [];
+  private active = 0;
+
+  /** reveal: shows a setting of the stage that was chosen; searched: called when a search begins or ends */
+  constructor(
+    private readonly model: Model,
+    private readonly reveal: (name: string) => void,
+    private readonly searched: () => void,
+  ) {
+    this.input.addEventListener("input", () => this.look());
+    this.input.addEventListener("keydown", (event) => this.key(event));
+    bindKey({ keys: "/", does: "search the settings of all stages", on: plainKey("/"), run: () => this.focus() });
+  }
+
+  /** Whether results are shown. */
+  get on(): boolean {
+    return this.input.value.trim() !== "";
+  }
+
+  private focus(): void {
+    if (document.documentElement.dataset["sheet"] !== undefined) document.documentElement.dataset["sheet"] = "settings";
+    this.input.focus();
+    this.input.select();
+  }
+
+  private end(): void {
+    this.input.value = "";
+    this.look();
+  }
+
+  private look(): void {
+    const words = this.input.value.toLowerCase().split(/\s+/).filter(Boolean);
+    this.found = words.length ? this.all(words).sort((a, b) => a.rank - b.rank).slice(0, MOST) : [];
+    this.active = 0;
+    const none = h("li", { class: "told" }, "No setting of any stage is called that.");
+    const rows = this.found.map((one, k) => {
+      const label = one.inner ? `${one.setting.label} › ${one.inner.label}` : one.setting.label;
+      const about = (one.inner ?? one.setting).description;
+      return h(
+        "li",
+        { role: "option", id: `found-${k}`, title: about, onclick: () => this.go(k) },
+        h("span", { class: "found-name" }, label),
+        h("span", { class: "found-stage" }, one.stage),
+        h("span", { class: "found-about" }, about),
+      );
+    });
+    this.results.replaceChildren(...(rows.length ? rows : [none]));
+    this.results.toggleAttribute("hidden", !this.on);
+    this.input.setAttribute("aria-expanded", String(this.on));
+    this.mark();
+    this.searched();
+  }
+
+  private mark(): void {
+    [...this.results.children].forEach((row, k) => row.setAttribute("aria-selected", String(k === this.active)));
+    const row = this.results.children[this.active];
+    if (this.found.length && row) {
+      this.input.setAttribute("aria-activedescendant", row.id);
+      row.scrollIntoView({ block: "nearest" });
+    } else this.input.removeAttribute("aria-activedescendant");
+  }
+
+  private key(event: KeyboardEvent): void {
+    const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+    if (step && this.found.length) this.active = (this.active + step + this.found.length) % this.found.length;
+    else if (event.key === "Enter") {
+      event.preventDefault(); // the setting that gets the focus does not take the key
+      return this.go(this.active);
+    } else if (event.key === "Escape") {
+      this.end();
+      this.input.blur();
+    } else return;
+    event.preventDefault();
+    this.mark();
+  }
+
+  private go(index: number): void {
+    const one = this.found[index];
+    if (!one) return;
+    this.end();
+    this.model.choose(one.file, one.place);
+    this.reveal(one.setting.name);
+  }
+
+  /** Settings with all words in their names or descriptions; the names count before the descriptions. */
+  private all(words: string[]): Found[] {
+    const found: Found[] = [];
+    for (const { file, place, stage } of this.stages()) {
+      const schemas = new Schemas(this.model.welcome!.schemas[file] as ConstructorParameters<typeof Schemas>[0]);
+      for (const setting of schemas.settings(place, this.model.value(file, place) ?? null)) {
+        const inner = setting.varied ? [] : setting.inner;
+        for (const one of [null, ...inner]) {
+          const rank = rankOf(one ?? setting, words, stage);
+          if (rank !== null) found.push({ file, place, stage, setting, inner: one, rank: rank + (one ? 0.5 : 0) });
+        }
+      }
+    }
+    return found;
+  }
+
+  /** All stages of the open files, that which is chosen first. */
+  private stages(): { file: File; place: Place; stage: string }[] {
+    const { documents, chosen } = this.model;
+    const all: { file: File; place: Place; stage: string }[] = [];
+    if (documents.recipe) {
+      all.push({ file: "recipe", place: [], stage: "recipe" });
+      for (const { name, place } of documents.recipe.stages) all.push({ file: "recipe", place, stage: name.replaceAll("_", " ") });
+    }
+    const shot = documents.shot?.values;
+    if (shot) {
+      all.push({ file: "shot", place: [], stage: "shot" });
+      for (const name of SHOT_TABLES.filter((one) => shot[one])) all.push({ file: "shot", place: [name], stage: name });
+      for (const kind of ["cloth", "collider"])
+        ((shot[kind] ?? []) as Json[]).forEach((_, k) => all.push({ file: "shot", place: [kind, k], stage: String(at(shot[kind], [k, "name"]) ?? kind) }));
+    }
+    const here = JSON.stringify(chosen);
+    return all.sort((a, b) => Number(JSON.stringify({ file: b.file, place: b.place }) === here) - Number(JSON.stringify({ file: a.file, place: a.place }) === here));
+  }
+}
+
+/** How well a setting fits: 0 its name, 1 the beginning of it, 2 a part of it, 3 its stage, 4 its description. */
+function rankOf(setting: Setting, words: string[], stage: string): number | null {
+  const [label, name, about] = [setting.label, setting.name, setting.description].map((text) => text.toLowerCase());
+  const all = words.join(" ");
+  const inAll = (text: string) => words.every((word) => text.includes(word));
+  if (all === label || all === name) return 0;
+  if (label.startsWith(all) || name.startsWith(all)) return 1;
+  if (inAll(`${label} ${name}`)) return 2;
+  if (inAll(`${stage.toLowerCase()} ${label} ${name}`)) return 3;
+  return inAll(`${stage.toLowerCase()} ${label} ${name} ${about}`) ? 4 : null;
+}

@@ -1,0 +1,99 @@
+// Snapshots of the look: taken by a button or a key, and shown as a strip of thumbnails.
+
+import { h, iconButton } from "../dom";
+import type { Model } from "../model";
+import type { Snapshot } from "../protocol";
+import { thumbnail } from "../view/capture";
+import type { Viewer } from "../view/viewer";
+import { shortTime } from "./author";
+import { compareWith } from "./compare";
+import { openDialog } from "./dialog";
+import { bindKey, plainKey } from "./keys";
+import type { Look } from "./look";
+import { ownName } from "./people";
+import type { Tray, TrayTab } from "./tray";
+
+export class Snapshots {
+  readonly button = iconButton("snapshot", "Take a snapshot (S)", () => this.take());
+  private readonly strip = h("ul", { class: "strip", "aria-label": "Snapshots" });
+  private readonly tab: TrayTab;
+  private waiting = false;
+
+  constructor(
+    private readonly model: Model,
+    private readonly viewer: Viewer,
+    private readonly look: Look,
+    private readonly tray: Tray,
+  ) {
+    const take = h("button", { type: "button", class: "primary", onclick: () => this.take() }, "Take a snapshot");
+    this.tab = { title: "Snapshots", element: this.strip, actions: [take], count: () => model.snapshots.length };
+    tray.add(this.tab);
+    for (const topic of ["snapshots", "pictures", "role"] as const) model.on(topic, () => this.update());
+    model.on("document", () => {
+      const { hidden } = this.button;
+      this.button.hidden = !model.documents.recipe;
+      if (hidden !== this.button.hidden) this.update();
+    });
+    model.on("numbers", () => this.waiting && model.settled && this.take());
+    bindKey({ keys: "S", does: "take a snapshot", on: plainKey("s"), run: () => this.take() });
+    this.update();
+  }
+
+  /** Takes a snapshot of the open recipe, as soon as the groom that is seen is that of its settings. */
+  take(): void {
+    const { model } = this;
+    if (!model.documents.recipe) return;
+    this.waiting = !model.settled && !model.stuck;
+    if (this.waiting) return;
+    const picture = thumbnail(this.viewer).toDataURL("image/png").split(",")[1];
+    model.say({ kind: "take_snapshot", author: ownName(), look: this.look.state, picture });
+    this.tray.open(this.tab);
+  }
+
+  private update(): void {
+    const { snapshots } = this.model;
+    this.tray.update();
+    if (this.strip.contains(document.activeElement) && document.activeElement instanceof HTMLTextAreaElement) return;
+    const empty = h("li", { class: "nothing" }, "No snapshots yet. A snapshot keeps the settings, the camera and the light, with a picture and a note.");
+    const at = this.strip.scrollLeft;
+    this.strip.replaceChildren(...(snapshots.length ? [...snapshots].reverse().map((one) => this.card(one)) : [empty]));
+    this.strip.scrollLeft = at;
+  }
+
+  private card(one: Snapshot): HTMLElement {
+    const { model } = this;
+    const { leads } = model.role;
+    const title = one.note.split("\n")[0] || shortTime(one.time);
+    const picture = h("img", { src: model.pictures.get(`snapshots/${one.id}`), alt: "" });
+    const compare = h(
+      "button",
+      { type: "button", class: "thumbnail", disabled: !leads, title: "Compare with it", "aria-label": `Compare with ‘${title}’`, onclick: () => compareWith(model, `snapshot:${one.id}`) },
+      picture,
+    );
+    const note = h("textarea", { rows: 1, maxlength: 4000, placeholder: "Note", "aria-label": `Note of ‘${title}’` });
+    note.value = one.note;
+    note.addEventListener("change", () => model.say({ kind: "edit_snapshot", id: one.id, note: note.value }));
+    note.addEventListener("keydown", (event) => event.key === "Escape" && note.blur());
+    note.addEventListener("blur", () => setTimeout(() => this.update()));
+    const buttons = h(
+      "span",
+      { class: "group" },
+      iconButton("load", "Load: set the recipe to it", () => model.say({ kind: "load_snapshot", id: one.id }), { disabled: !leads }),
+      iconButton("camera", "Look from where it was taken", () => this.look.apply(one.look, false)),
+      iconButton("bin", "Delete it", () => this.askDelete(one, title)),
+    );
+    const when = h("time", { datetime: one.time, title: new Date(one.time).toLocaleString() }, shortTime(one.time));
+    const head = h("div", { class: "card-head" }, h("span", { class: "by" }, one.author, one.author ? " · " : "", when), buttons);
+    return h("li", { class: "card", "data-id": one.id }, compare, head, note);
+  }
+
+  private askDelete(one: Snapshot, title: string): void {
+    const remove = h("button", { type: "button", class: "primary" }, "Delete");
+    const dialog = openDialog("Delete a snapshot", h("p", {}, `‘${title}’ and its files are deleted for all viewers.`), remove);
+    remove.addEventListener("click", () => {
+      this.model.say({ kind: "delete_snapshot", id: one.id });
+      dialog.close();
+    });
+    remove.focus();
+  }
+}

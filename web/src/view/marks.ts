@@ -1,0 +1,58 @@
+// Lines that are drawn over the picture. Their points are from its middle, to the right and up, in heights of the
+// picture, so that they are in place in a picture of any size.
+
+export type Stroke = [number, number][];
+export interface Size {
+  width: number;
+  height: number;
+}
+
+const HEAD = 0.035; // length of the head of an arrow
+const NEAREST = 0.003; // distance from which a point of a line is kept
+
+/** The point of the pointer in heights of the picture. */
+export function fromPixels({ x, y }: { x: number; y: number }, { width, height }: Size): [number, number] {
+  const round = (value: number) => Number(value.toFixed(4));
+  return [round((x - width / 2) / height), round((height / 2 - y) / height)];
+}
+
+export function toPixels([x, y]: [number, number], { width, height }: Size): { x: number; y: number } {
+  return { x: width / 2 + x * height, y: height / 2 - y * height };
+}
+
+/** An arrow as one line: its shaft, and both sides of its head. */
+export function arrow(from: [number, number], to: [number, number]): Stroke {
+  const angle = Math.atan2(to[1] - from[1], to[0] - from[0]);
+  const side = (turn: number): [number, number] => [
+    Number((to[0] - HEAD * Math.cos(angle + turn)).toFixed(4)),
+    Number((to[1] - HEAD * Math.sin(angle + turn)).toFixed(4)),
+  ];
+  return [from, to, side(0.45), to, side(-0.45)];
+}
+
+/** Whether a point is far enough from the last one of a line to be kept. */
+export function isNew(stroke: Stroke, [x, y]: [number, number]): boolean {
+  const last = stroke[stroke.length - 1];
+  return !last || Math.hypot(x - last[0], y - last[1]) > NEAREST;
+}
+
+/** Draws lines into a picture. */
+export function paintStrokes(context: CanvasRenderingContext2D, strokes: Stroke[], size: Size): void {
+  context.lineJoin = context.lineCap = "round";
+  for (const [width, color] of [
+    [0.01, "rgb(0 0 0 / 0.55)"],
+    [0.006, "#ffb45e"],
+  ] as const) {
+    context.lineWidth = width * size.height;
+    context.strokeStyle = color;
+    for (const stroke of strokes) {
+      context.beginPath();
+      stroke.forEach((point, k) => {
+        const { x, y } = toPixels(point, size);
+        if (k) context.lineTo(x, y);
+        else context.moveTo(x, y);
+      });
+      context.stroke();
+    }
+  }
+}
