@@ -175,6 +175,22 @@ nb::ndarray<nb::numpy, double> resample_curves(const Array3<double> &points, con
     return to_numpy<double>(std::move(result), {n, 3});
 }
 
+nb::ndarray<nb::numpy, double> points_on_splines(const Array3<double> &points, const Array1<int> &offsets,
+                                                 const Array1<double> &along) {
+    const CurveView curves = curves_of(points, offsets);
+    const View<double> lengths{along.data(), along.size()};
+    const size_t curve_count = curves.count(), each = curve_count ? lengths.size() / curve_count : 0;
+    if (each * curve_count != lengths.size()) throw std::invalid_argument("along needs as many lengths for every curve");
+    std::vector<Vec3> result(lengths.size());
+    {
+        nb::gil_scoped_release release;
+#pragma omp parallel for schedule(static)
+        for (size_t i = 0; i < curve_count; ++i)
+            on_spline(curves[static_cast<int>(i)], lengths.subspan(i * each, each), std::span(result).subspan(i * each, each));
+    }
+    return to_numpy<double>(std::move(result), {lengths.size(), 3});
+}
+
 } // namespace
 
 void bind_geometry(nb::module_ &module) {
@@ -203,6 +219,9 @@ void bind_geometry(nb::module_ &module) {
     module.def("curve_frames", &curve_frames, "points"_a, "offsets"_a, "axis"_a,
                "Rotation-minimising frames (n, 3, 3) along curves (Wang et al. 2008), with columns axis, tangent x axis and\n"
                "tangent. The first axis of each curve is axis (count, 3) made orthogonal to its first tangent.");
+    module.def("points_on_splines", &points_on_splines, "points"_a, "offsets"_a, "along"_a,
+               "Points of the cubic spline through each curve at lengths along its polyline [m], as many for every curve:\n"
+               "along (curves * k,), result (curves * k, 3) [m]. Beyond the ends they are on the tangents there.");
     module.def("resample_curves", &resample_curves, "points"_a, "offsets"_a, "count"_a,
-               "Points evenly spaced along the Catmull-Rom spline through each curve, shape (curves * count, 3) [m].");
+               "Points evenly spaced along the cubic spline through each curve, shape (curves * count, 3) [m].");
 }

@@ -36,8 +36,8 @@ FOCAL_LENGTH, AWAY = 0.085, 1.9  # of the lens; from the camera to what it looks
 PAGE_HEAD = """# Gallery
 
 Styles on two heads in one light. The child and the adult are made by the code in `examples/child` and `examples/adult`.
-Pictures are path-traced with all hairs of the groom: about 120 per cm² of scalp where hair is loose, and at least 45 in
-woven styles such as braids, twists and locs. Pictures that are not rendered yet are left out.
+Pictures are path-traced with all hairs of the groom: about 120 per cm² of scalp or more, also in braids, twists, locs.
+Pictures that are not rendered yet are left out.
 `python docs/gallery.py` makes the pictures, and this page from `docs/gallery.toml`.
 
 A recipe fits the other head with two lines, as the middle of the skull and the names of regions are the same:

@@ -51,12 +51,12 @@ def draw(axes: Axes, lines: list[NDArray[np.floating]], x: float, width: float) 
 
 
 def locks(name: str) -> None:
-    """Draws two locks of one type, hanging side by side: 60 mm by 68 mm."""
+    """Draws two locks of one type, hanging side by side: 76 mm by 86 mm."""
     figure = Figure(figsize=(3.2, 3.6), dpi=100)
     axes = figure.add_axes((0, 0, 1, 1))
     for number, lines in enumerate(bundles(read_recipe(TYPES / f"{name}.recipe.toml"), (3, 4))):
-        draw(axes, lines, 30 * number, 0.6)
-    axes.set(xlim=(-15, 45), ylim=(-66, 1.5), aspect="equal")
+        draw(axes, lines, 36 * number, 0.6)
+    axes.set(xlim=(-20, 56), ylim=(-84, 1.5), aspect="equal")
     axes.axis("off")
     figure.savefig(IMAGES / "gallery" / f"{name}_locks.jpg", pil_kwargs={"quality": 82})
 

@@ -104,11 +104,22 @@ BOOST_AUTO_TEST_CASE(a_closed_curve_turns_the_transported_axis_by_the_solid_angl
                boost::test_tools::tolerance(1e-3));
 }
 
-BOOST_AUTO_TEST_CASE(the_spline_passes_through_its_points_and_reproduces_a_parabola) {
+BOOST_AUTO_TEST_CASE(the_spline_passes_through_its_points_with_continuous_curvature) {
     std::vector<Vec3> points;
-    for (int i = 0; i < 6; ++i) points.emplace_back(i, 0.5 * i * i, 2.0);
-    for (int i = 0; i < 6; ++i) BOOST_TEST((spline(points, i) - points[i]).norm() < 1e-14);
-    for (double at = 0.0; at <= 5.0; at += 0.1) BOOST_TEST((spline(points, at) - Vec3(at, 0.5 * at * at, 2.0)).norm() < 1e-12);
+    for (int i = 0; i < 6; ++i) points.emplace_back(i, 0.5 * i * i, i == 3 ? 1.0 : 2.0); // unevenly spaced
+    const std::vector<Cubic> pieces = spline(points);
+    BOOST_REQUIRE(pieces.size() == 5);
+    for (size_t i = 0; i < pieces.size(); ++i) {
+        BOOST_TEST((pieces[i](0.0) - points[i]).norm() == 0.0);
+        BOOST_TEST((pieces[i](1.0) - points[i + 1]).norm() < 1e-12);
+    }
+    for (size_t i = 0; i + 1 < pieces.size(); ++i) {
+        const Cubic &a = pieces[i], &b = pieces[i + 1];
+        const double ha = (points[i + 1] - points[i]).norm(), hb = (points[i + 2] - points[i + 1]).norm();
+        BOOST_TEST(((a.c1 + 2.0 * a.c2 + 3.0 * a.c3) / ha - b.c1 / hb).norm() < 1e-12);
+        BOOST_TEST(((2.0 * a.c2 + 6.0 * a.c3) / (ha * ha) - 2.0 * b.c2 / (hb * hb)).norm() < 1e-12);
+    }
+    for (const Cubic &end : {pieces.front(), pieces.back()}) BOOST_TEST(end.c3.norm() < 1e-12);
 }
 
 BOOST_AUTO_TEST_CASE(near_segments_agree_with_a_test_of_every_pair) {

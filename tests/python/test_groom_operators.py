@@ -7,9 +7,10 @@ import pytest
 from ringlet.data.random import Random
 from ringlet.groom.operators import Context
 from ringlet.groom.scalp import Scalp
+from scipy.signal import find_peaks
 from shapes import ball, sheet
 
-from ringlet import Curves, UserError
+from ringlet import Curves, UserError, _core
 from ringlet.groom import make_groom, parse_recipe
 
 OPERATORS = {
@@ -412,9 +413,64 @@ def test_cut_locks_end_on_the_plane_within_softness_and_keep_their_way_to_it():
     np.testing.assert_allclose(cut.lengths()[beyond], 0.01, rtol=0.02)
     kept = before.max(axis=1) < 0.048
     assert np.array_equal(grid(cut)[kept], grid(plain)[kept])
-    # What is left lies on the old polyline.
-    a, b = grid(plain)[inside][:, :-1], grid(plain)[inside][:, 1:]
+    # What is left lies on the spline of the old shape.
+    whole = plain.take(inside)
+    fine = _core.resample_curves(np.ascontiguousarray(whole.points, np.float64), whole.offsets, 600)
+    fine = fine.reshape(len(whole), 600, 3)
+    a, b = fine[:, :-1], fine[:, 1:]
     for lock, start, edge in zip(grid(cut)[inside], a, b - a, strict=True):
         t = np.clip(np.einsum("pkx,kx->pk", lock[:, None] - start, edge) / np.sum(edge**2, axis=1), 0.0, 1.0)
         off = np.linalg.norm(lock[:, None] - (start + t[:, :, None] * edge), axis=2).min(axis=1)
-        assert off.max() < 1e-9
+        assert off.max() < 1e-6
+
+
+def _turning(points):
+    """Curvature at the inner points of a polyline (n, 3), shape (n - 2,) [rad/m]."""
+    edges = np.diff(points, axis=0)
+    lengths = np.linalg.norm(edges, axis=1)
+    cosines = np.sum(edges[1:] * edges[:-1], axis=1) / (lengths[1:] * lengths[:-1])
+    return np.arccos(np.clip(cosines, -1.0, 1.0)) / (0.5 * (lengths[1:] + lengths[:-1]))
+
+
+def test_a_smooth_shape_of_few_points_has_no_bends_at_them():
+    u = (np.arange(9) + 0.5) / 9
+    heading = np.stack([0 * u + 1.0, 0.3 - 8.0 * u, 0 * u], axis=1)  # a guide that falls from a parting
+    guide = np.concatenate([np.zeros((1, 3)), np.cumsum(heading / np.linalg.norm(heading, axis=1)[:, None], axis=0)])
+    shape = _core.resample_curves(guide, np.array([0, 10], np.int32), 20)
+    bend = _turning(_core.resample_curves(shape, np.array([0, 20], np.int32), 100))
+    assert len(find_peaks(bend, prominence=0.02 * bend.max())[0]) <= 1  # one bend, at the parting
+    assert np.abs(np.diff(bend)).max() < 0.15 * bend.max()
+
+
+def test_a_shape_of_uneven_points_is_as_smooth():
+    along = np.cumsum([0.0, 0.1, 0.4, 0.1, 0.1, 0.5, 0.2, 0.1, 0.4])
+    circle = np.stack([np.cos(along), np.sin(along), 0 * along], axis=1)
+    dense = _core.resample_curves(circle, np.array([0, len(along)], np.int32), 60)
+    np.testing.assert_allclose(np.linalg.norm(dense, axis=1), 1.0, atol=1e-3)
+    np.testing.assert_allclose(_turning(dense)[4:-4], 1.0, atol=0.1)
+
+
+def test_a_cut_shape_has_no_bends_at_the_points_it_had():
+    text = """
+ringlet = 1
+[scalp]
+region = "scalp"
+[guides]
+count = 30
+length = 20
+lift = 0.2
+droop = 3
+[locks]
+count = 60
+shape_points = 12
+points = 80
+[[shape]]
+op = "length"
+factor = 0.7
+cut = true
+[clean]
+margin = 0
+"""
+    locks = make_groom(parse_recipe(text), ball(0.02)).locks.points.reshape(60, 80, 3)
+    bend = np.array([_turning(points) for points in locks])
+    assert (np.abs(np.diff(bend, axis=1)).max(axis=1) < 0.15 * bend.max(axis=1)).mean() > 0.9

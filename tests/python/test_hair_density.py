@@ -96,3 +96,22 @@ def test_hairs_that_hang_before_the_scalp_hide_the_part_that_their_optical_depth
     depth = cover.measure(plate, np.arange(len(plate.triangles), dtype=np.int32), hairs, toward=from_above)
     assert np.isclose(depth.seen(), np.exp(-2001 * 1e-4 / 0.2), atol=0.02)
     assert np.isclose(depth.seen(2.0), np.exp(-2 * 2001 * 1e-4 / 0.2), atol=0.02)
+
+
+@pytest.mark.parametrize("pattern", ["brick", "rows"])
+def test_a_density_counts_the_share_of_a_section_for_every_strand(pattern):
+    shape = "[[shape]]\nop = 'cornrow'\n" if pattern == "rows" else "[[shape]]\nop = 'braid'\nwidth = 0.8\n"
+    recipe = (
+        "ringlet = 1\n[scalp]\nregion = 'scalp'\n[guides]\ncount = 30\nlength = 12\n[locks]\npoints = 200\n"
+        f"[locks.sections]\npattern = '{pattern}'\nsize = 3\ngap = 0.3\nstrands = 3\n{shape}[hairs]\ndensity = 40\n"
+    )
+    made = make_groom(parse_recipe(recipe), ball())
+    without_partings = (1.0 - 0.3 / 3.0) ** (1 if pattern == "rows" else 2)
+    assert np.isclose(hairs_per_cm2(made), 40.0 * without_partings, rtol=0.12)
+
+
+def test_hair_does_not_crowd_at_the_border_of_the_scalp():
+    height = make_hairs(dense("density = 60\nspread = '12 mm'\n")).curves.roots[:, 1]  # the border is at 0
+    band = 0.002
+    in_band = (height < band).mean() / (height < 5 * band).mean()
+    assert in_band < 0.35  # 0.2 where hair is even

@@ -12,6 +12,7 @@ from ringlet.data.mesh import Mesh
 from ringlet.data.random import Random
 from ringlet.groom.hair_settings import IDS_PER_LOCK, hair_settings, hair_values
 from ringlet.groom.several import grooms_of
+from ringlet.groom.shares import share_areas
 
 SAMPLES_PER_LOCK = 60
 LARGEST_SHARE = 1.5  # of a lock, relative to the median: hair stays sparse where locks are
@@ -56,10 +57,17 @@ def hair_region(groom: Groom) -> NDArray[np.int32]:
 
 
 def groom_areas(groom: Groom) -> NDArray[np.float64]:
-    """Share of the scalp that each lock's hairs cover [m²], shape (locks,); 0 where the settings have no density."""
+    """Share of the scalp that each lock's hairs cover [m²], shape (locks,); 0 where the settings have no density.
+
+    That of a section's strand is its share of the section, that of a loose lock what is nearest to its root.
+    """
     if hair_settings(groom).density is None:
         return np.zeros(len(groom.locks))
-    return lock_areas(groom.scalp, hair_region(groom), np.asarray(groom.locks.roots, np.float64))
+    of_sections = share_areas(groom.locks)
+    if of_sections.all():
+        return of_sections
+    nearest = lock_areas(groom.scalp, hair_region(groom), np.asarray(groom.locks.roots, np.float64))
+    return np.where(of_sections > 0.0, of_sections, nearest)
 
 
 def lock_areas(scalp: Mesh, region: NDArray[np.int32], roots: NDArray[np.float64]) -> NDArray[np.float64]:

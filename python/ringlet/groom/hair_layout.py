@@ -26,6 +26,7 @@ from ringlet.groom.values import Values
 
 FRIZZ_KNOTS = 8
 PLASTIC = np.array([0.7548776662466927, 0.5698402909980532])  # steps of a low-discrepancy sequence in the plane
+MIRRORED = 1e-4  # distance from the region from which a root is mirrored at its border [m]
 LATEST_JOIN = 0.9  # part of a lock
 PACE_EASE = 0.3  # half the part of `gather` over which a flat hair turns into its lock
 
@@ -59,7 +60,7 @@ def place_hairs(groom: Groom, settings: HairSettings, fraction: float, wider: bo
     if shared.any():
         of = lock[shared]
         places[shared] = scattered(locks.curve[REACH][of], roots[of], frames[of, :, 2], disk[shared])
-    root_triangle, root_barycentric, _ = _core.bind_roots(scalp.points, scalp.triangles, places, hair_region(groom))
+    root_triangle, root_barycentric = _rooted(groom, places)
     root_triangle[~hairs.free] = locks.curve["root_triangle"]
     root_barycentric[~hairs.free] = locks.curve["root_barycentric"]
 
@@ -89,6 +90,20 @@ def place_hairs(groom: Groom, settings: HairSettings, fraction: float, wider: bo
         layout["frizz"] = _felted(settings, own, hairs, layout["frizz"])
     layout |= _curl(values, layout, hairs, u)
     return curves, layout | _neighbours(settings, own, curves, hairs, roots, u)
+
+
+def _rooted(groom: Groom, places: NDArray) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
+    """Triangles (n,) and barycentrics (n, 3) of the roots nearest to places (n, 3) [m].
+
+    Places beyond the border of the region are mirrored at it, so that hair does not crowd there.
+    """
+    points, region = np.ascontiguousarray(groom.scalp.points, np.float64), hair_region(groom)
+    triangle, barycentric, off = _core.bind_roots(points, groom.scalp.triangles, places, region)
+    beyond = np.flatnonzero(off > MIRRORED)
+    corners = points[groom.scalp.triangles[triangle[beyond]]]
+    inside = 2.0 * np.einsum("nc,ncx->nx", barycentric[beyond], corners) - places[beyond]
+    triangle[beyond], barycentric[beyond], _ = _core.bind_roots(points, groom.scalp.triangles, inside, region)
+    return triangle, barycentric
 
 
 def _root_in_rows(

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet import _core
+from ringlet.data.curves import Curves
 from ringlet.data.groom import SECTION
 from ringlet.groom.scalp import Scalp, tangents
 from ringlet.groom.sections import EDGE, Division
@@ -93,6 +94,23 @@ def row_reaches(
         has &= off <= BEYOND[0] + BEYOND[1] * middle
         low, high = np.where(has, middle, low), np.where(has, high, middle)
     return low.astype(np.float32)
+
+
+def share_areas(locks: Curves) -> NDArray[np.float64]:
+    """Areas of the shares of locks [m²], shape (locks,); 0 for locks of no section."""
+    if REACH not in locks.curve:
+        return np.zeros(len(locks))
+    reach = locks.curve[REACH].astype(np.float64)
+    areas = np.pi / DIRECTIONS * (reach**2).sum(axis=1)  # ∫ r²/2 dθ
+    laid = locks.curve.get(LAID, np.zeros(len(locks)))
+    for section in np.unique(locks.curve[SECTION][(reach.max(axis=1) > 0.0) & (laid > 0.0)]):
+        strands = np.flatnonzero((locks.curve[SECTION] == section) & (laid > 0.0))
+        row = locks.take(strands)
+        middle = row.points.reshape(len(row), -1, 3).mean(axis=0)
+        on_scalp = middle[: 1 + round(float((laid[strands] / row.lengths()).mean()) * (len(middle) - 1))]
+        length = np.linalg.norm(np.diff(on_scalp, axis=0), axis=1).sum()
+        areas[strands] = length * 2.0 * reach[strands].mean(axis=1) / len(strands)  # to both sides of the row
+    return areas
 
 
 @dataclass(frozen=True)

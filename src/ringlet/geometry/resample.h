@@ -1,4 +1,4 @@
-// Catmull–Rom splines through the points of a polyline, and their resampling by arc length.
+// Cubic splines through the points of a polyline, and their resampling by arc length.
 #pragma once
 
 #include "ringlet/geometry/frames.h"
@@ -13,11 +13,12 @@ struct Cubic {
     Vec3 operator()(double t) const { return c0 + t * (c1 + t * (c2 + t * c3)); }
 };
 
-// The uniform Catmull–Rom spline through one polyline between its points i and i + 1.
-Cubic spline_piece(View<Vec3> points, int i);
+// The cubic spline through a polyline of at least two points, piece by piece: curvature is continuous, so that a smooth shape
+// of few points shows no bends at them. Its parameter is the chord length, so that points may be unevenly spaced.
+std::vector<Cubic> spline(View<Vec3> points);
 
-// The spline at the parameter `at` in [0, points.size() - 1]; it passes exactly through the points.
-Vec3 spline(View<Vec3> points, double at);
+// Points of the spline at lengths along the polyline [m], as many as `result` has; beyond the ends, on the tangents there.
+void on_spline(View<Vec3> points, View<double> along, std::span<Vec3> result);
 
 // Points evenly spaced along the spline, as many as `result` has; the ends are kept.
 void resample(View<Vec3> points, std::span<Vec3> result);

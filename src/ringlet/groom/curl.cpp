@@ -39,8 +39,7 @@ struct NoiseSample {
 class Spine {
 public:
     void fit(View<Vec3> shape, const Vec3 &axis) {
-        pieces_.clear();
-        for (size_t i = 0; i + 1 < shape.size(); ++i) pieces_.push_back(spline_piece(shape, static_cast<int>(i)));
+        pieces_ = spline(shape);
         const size_t n = 4 * (shape.size() - 1) + 1;
         for (auto *values : {&points_, &tangents_, &a_, &b_}) values->resize(n);
         along_.assign(n, 0.0);

@@ -31,6 +31,6 @@ class GrowTo(ToTarget):
         own = arc_lengths(points)
         more = np.maximum(self._values("most", curves, context) - own[:, -1], 0.0)
         last = points.shape[1] - 1 - max(1, round(LAST * (points.shape[1] - 1)))
-        end = points[:, -1] + more[:, None] * unit(points[:, -1] - points[:, last])
-        beyond = own[:, -1:] + more[:, None] * np.linspace(0.0, 1.0, SEARCHED + 1)[1:]
-        return np.concatenate([points, end[:, None]], axis=1), np.concatenate([own, beyond], axis=1)
+        further = more[:, None] * np.linspace(0.0, 1.0, SEARCHED + 1)[1:]
+        straight = points[:, -1:] + further[:, :, None] * unit(points[:, -1] - points[:, last])[:, None]
+        return np.concatenate([points, straight], axis=1), np.concatenate([own, own[:, -1:] + further], axis=1)

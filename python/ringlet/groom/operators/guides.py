@@ -35,7 +35,7 @@ class Guides(Operator):
 
 
 def by_length(curves: Curves, segment: float) -> Curves:
-    """Resamples curves on their Catmull-Rom splines to equal edges of about the length ``segment`` [m]."""
+    """Resamples curves on their cubic splines to equal edges of about the length ``segment`` [m]."""
     counts = np.maximum(2, np.round(curves.lengths() / segment).astype(int) + 1)
     offsets = offsets_from_counts(counts)
     points = np.empty((offsets[-1], 3))

@@ -10,7 +10,7 @@ from pydantic import Field
 
 from ringlet.data.curves import Curves
 from ringlet.data.quantities import Quantity, Varied
-from ringlet.groom.operators.operator import Context, arc_lengths, at_lengths
+from ringlet.groom.operators.operator import Context, arc_lengths, on_splines
 from ringlet.groom.operators.shape import Shape
 
 
@@ -35,4 +35,4 @@ class Length(Shape):
             factor *= context.values(self, "to", curves) / np.maximum(along[:, -1], 1e-9)
         if not self.cut:
             return points[:, :1] + factor[:, None, None] * (points - points[:, :1])
-        return at_lengths(points, np.minimum(factor, 1.0)[:, None] * along)
+        return on_splines(points, np.minimum(factor, 1.0)[:, None] * along)

@@ -148,6 +148,17 @@ def at_lengths(points: NDArray, along: NDArray) -> NDArray[np.floating]:
     return points[rows, i] + t * (points[rows, i + 1] - points[rows, i])
 
 
+def on_splines(points: NDArray, along: NDArray) -> NDArray[np.float64]:
+    """Places on the cubic splines of shapes (count, points, 3) at lengths along their polylines (count, k) [m].
+
+    Shape (count, k, 3). A shape that is cut there stays as smooth as it was. Beyond the tip, places are on its tangent.
+    """
+    count, each = points.shape[:2]
+    flat = np.ascontiguousarray(points.reshape(-1, 3), np.float64)
+    offsets = offsets_from_counts(np.full(count, each))
+    return _core.points_on_splines(flat, offsets, np.ascontiguousarray(along, np.float64).ravel()).reshape(count, -1, 3)
+
+
 def along_edges(roots: NDArray, edges: NDArray) -> NDArray[np.floating]:
     """Polylines from roots (count, 3) and edge vectors (count, points - 1, 3); shape (count, points, 3)."""
     return np.concatenate([roots[:, None], roots[:, None] + np.cumsum(edges, axis=1)], axis=1)

@@ -11,7 +11,7 @@ from ringlet.groom.operators.operator import Context, Operator, resampled
 
 
 class Resample(Operator):
-    """Resamples shapes evenly along the Catmull-Rom spline through their points."""
+    """Resamples shapes evenly along the cubic spline through their points."""
 
     op: Literal["resample"] = "resample"
     points: int = Field(default=32, ge=3, le=10_000, description="points of a shape")

@@ -13,7 +13,7 @@ from scipy.spatial import KDTree
 from ringlet.data.curves import Curves
 from ringlet.data.groom import SECTION
 from ringlet.data.quantities import Quantity, Varied, refuse
-from ringlet.groom.operators.operator import Context, arc_lengths, at_lengths, evenly, unit
+from ringlet.groom.operators.operator import Context, arc_lengths, evenly, on_splines, unit
 from ringlet.groom.operators.shape import Shape
 from ringlet.groom.parting import Direction
 
@@ -73,7 +73,7 @@ class ToTarget(Shape):
         length = np.maximum(length, self._values("least", curves, context))
         own = arc_lengths(points)
         share = np.where(length < along[:, -1], length / np.maximum(own[:, -1], 1e-12), 1.0)
-        return np.where((share != 1.0)[:, None, None], at_lengths(path, share[:, None] * own), points)
+        return np.where((share != 1.0)[:, None, None], on_splines(path, share[:, None] * own), points)
 
     def _target(self, context: Context) -> Distance:
         if self.mesh is not None:
@@ -124,13 +124,13 @@ def _first_crossing(path: NDArray, along: NDArray, beyond: Distance) -> NDArray[
     along:  arc lengths that are searched, ascending from 0 [m], shape (count, k)
     beyond: distance beyond the target at places (count, k, 3), shape (count, k)
     """
-    crossed = beyond(at_lengths(path, along)) > 0.0
+    crossed = beyond(on_splines(path, along)) > 0.0
     i = np.maximum(crossed.argmax(axis=1), 1)
     rows = np.arange(len(path))
     low, high = along[rows, i - 1], along[rows, i]
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        past = beyond(at_lengths(path, middle[:, None]))[:, 0] > 0.0
+        past = beyond(on_splines(path, middle[:, None]))[:, 0] > 0.0
         low, high = np.where(past, low, middle), np.where(past, middle, high)
     length = np.where(crossed[:, 0], 0.0, 0.5 * (low + high))
     return np.where(crossed.any(axis=1), length, np.inf)
