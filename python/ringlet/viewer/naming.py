@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from typing import Any
 
 from ringlet.groom import Recipe
 from ringlet.viewer.protocol import Place
@@ -18,10 +19,10 @@ def new_name(place: Place, recipe: Recipe, used: Collection[str]) -> str:
 
 def value_at(recipe: Recipe, place: Place) -> object:
     """Value of a setting; None where there is nothing."""
-    data: object = recipe.model_dump(mode="json")
+    data: Any = recipe.model_dump(mode="json")
     for part in place:
         try:
-            data = data[part]  # pyright: ignore[reportIndexIssue]
+            data = data[part]
         except (KeyError, IndexError, TypeError):
             return None
     return data
