@@ -41,7 +41,7 @@ def test_controls_are_labelled_legible_and_reachable_by_keyboard(opened: Any):
     review.page.get_by_label("Dark or light").press("Enter")
     assert review.get("document.documentElement.dataset.theme") == "light"
     assert review.page.evaluate(REACH) == {"nameless": [], "faint": []}
-    assert review.picture().mean() > dark + 20
+    assert abs(review.picture().mean() - dark) < 5  # the wall is that of the render in both
     review.slider("curl.width").focus()
     review.page.keyboard.press("ArrowRight")
     review.until("ringlet.model.documents.recipe.dirty")

@@ -72,7 +72,7 @@ def test_the_pointer_of_the_leader_is_seen_where_it_points(pair: tuple[Review, R
     two.until("document.querySelector('.pointer').innerText == 'Ann'")
     two.page.wait_for_timeout(300)
     seen = pointer.bounding_box()
-    assert abs(seen["x"] + 2 - x) < 3 and abs(seen["y"] + 2 - y) < 3
+    assert abs(seen["x"] + 2 - x) < 8 and abs(seen["y"] + 2 - y) < 8
     two.page.set_viewport_size({"width": 800, "height": 500})  # another picture, the same place of the head
     two.until("ringlet.viewer.idle")
     two.page.wait_for_timeout(300)
@@ -119,5 +119,5 @@ def test_a_link_opens_the_view_that_it_was_copied_from(opened: Any, serve: Any):
     assert two.get(EYE) == pytest.approx(one.get(EYE), abs=1e-4)
     assert two.get("[ringlet.model.chosen.place.join(), ringlet.model.overlay]") == ["locks", "nail"]
     assert two.page.get_by_label("Light", exact=True).evaluate("e => e.selectedIndex") == 2
-    assert two.page.get_by_role("button", name="Follow Guest 1").is_visible()
+    two.page.get_by_role("button", name="Follow Guest 1").wait_for(timeout=10_000)
     assert not two.errors and not one.errors

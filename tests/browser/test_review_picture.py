@@ -17,7 +17,7 @@ from PIL import Image
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SIZE, SAMPLES, PATCH = 240, 16, 12
 # Bounds on percentiles of the luminance of patches: gaps between curls that are finer than a voxel have no shadow.
-BOUNDS = {5: 0.25, 50: 0.2, 95: 0.15}
+BOUNDS = {5: 0.3, 50: 0.2, 95: 0.15}
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 # Type, locks, points of a hair, colour. There are few and thick hairs, so that a reference takes seconds.

@@ -34,7 +34,7 @@ def test_a_preset_is_shown_while_the_pointer_rests_on_it_and_taken_by_a_click(op
     review.until("!ringlet.model.documents.recipe.undo")
     assert review.text() == before
     page.get_by_role("button", name="Keep a preset").click()
-    page.get_by_label("Name").fill("mine")
+    page.get_by_role("textbox", name="Name", exact=True).fill("mine")
     page.get_by_role("dialog").get_by_role("button", name="Keep", exact=True).click()
     page.locator('[data-preset="mine.preset.toml"] img').wait_for()
     assert (folder / "mine.preset.jpg").exists() and "[curl]" in (folder / "mine.preset.toml").read_text()

@@ -149,7 +149,7 @@ def test_keys_act_on_the_page_but_not_on_text_that_is_typed(opened: Any):
     number(review, "curl.width").press("Enter")
     review.until("ringlet.model.documents.recipe.dirty")
     page.get_by_role("button", name="Save as…").click()
-    page.get_by_label("Name").fill("wide")
+    page.get_by_role("textbox", name="Name", exact=True).fill("wide")
     page.keyboard.press("Control+z")  # of the text alone
     page.keyboard.press("Escape")
     review.answered()
@@ -182,7 +182,7 @@ def test_another_file_is_opened_after_unsaved_changes_are_saved(opened: Any, fol
     assert review.get("ringlet.viewer.hair.a.locks.ids.length") == 9
     assert "width = 2" in (folder / "small.recipe.toml").read_text()
     page.get_by_role("button", name="Save as…").click()
-    page.get_by_label("Name").fill("third")
+    page.get_by_role("textbox", name="Name", exact=True).fill("third")
     page.get_by_role("dialog").get_by_role("button", name="Save", exact=True).click()
     review.until("ringlet.model.welcome.name == 'third.recipe.toml'")
     assert page.locator(".file-name").inner_text() == "third.recipe.toml"

@@ -89,14 +89,13 @@ void space_evenly(View<Vec3> fine, std::span<Vec3> result) {
 }
 
 void resample(View<Vec3> points, std::span<Vec3> result) {
-    const std::vector<Cubic> pieces = spline(points);
+    double length = 0.0; // of the chords
+    for (size_t i = 1; i < points.size(); ++i) length += (points[i] - points[i - 1]).norm();
     std::vector<Vec3> fine(4 * std::max(points.size(), result.size()));
-    const double per_sample = static_cast<double>(pieces.size()) / static_cast<double>(fine.size() - 1);
-    for (size_t k = 0; k < fine.size(); ++k) {
-        const double at = per_sample * static_cast<double>(k);
-        const size_t i = std::min(static_cast<size_t>(at), pieces.size() - 1);
-        fine[k] = pieces[i](at - static_cast<double>(i));
-    }
+    std::vector<double> along(fine.size());
+    for (size_t k = 0; k < along.size(); ++k)
+        along[k] = length * static_cast<double>(k) / static_cast<double>(along.size() - 1);
+    on_spline(points, along, fine);
     fine.back() = points.back();
     space_evenly(fine, result);
 }

@@ -156,8 +156,8 @@ export class Look {
       return false;
     }
     this.apply(link.view, true);
-    if (!this.model.role.leads) this.setFollows(false);
-    else this.changed();
+    this.setFollows(false);
+    if (this.model.role.leads) this.changed();
     return true;
   }
 

@@ -67,10 +67,10 @@ export class Settings {
       const nothing = locks.length > 0 && !settings.length;
       const of = locks.length === 1 ? `lock ${locks[0]}` : `${locks.length} locks`;
       this.element.replaceChildren(
-        h("h2", {}, stageTitle(this.model)),
-        locks.length ? h("p", { class: "alone" }, `of ${of} alone`) : "",
         this.search.input,
         this.search.results,
+        h("h2", {}, stageTitle(this.model)),
+        locks.length ? h("p", { class: "alone" }, `of ${of} alone`) : "",
         nothing ? h("p", { class: "told" }, "No setting of this stage can differ for a single lock.") : "",
         h("div", { class: "fields" }, ...this.fields.map((field) => field.element)),
         this.more,

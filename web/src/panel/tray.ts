@@ -18,7 +18,7 @@ export class Tray {
   readonly element = h("section", { class: "tray", hidden: true, "aria-label": "Snapshots, notes and references" });
   readonly button = iconButton("tray", "Snapshots, notes and references (T)", () => this.show(this.element.hidden === true));
   private readonly tabs: { tab: TrayTab; button: HTMLElement }[] = [];
-  private readonly list = h("div", { class: "group", role: "tablist" });
+  private readonly list = h("div", { class: "group", role: "tablist", "aria-label": "Tray" });
   private readonly actions = h("div", { class: "group tray-actions" });
   private readonly body = h("div", { class: "tray-body" });
   private chosen: TrayTab | null = null;
