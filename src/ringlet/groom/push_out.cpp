@@ -45,12 +45,14 @@ private:
 class Bodies {
 public:
     Bodies(View<const Solid *> bodies, double reach) : bodies_(bodies) {
+        grids_.reserve(bodies.size());
         for (const Solid *body : bodies) grids_.emplace_back(body->mesh(), reach);
     }
 
     // One probe for each body, for a curve from a root.
     std::vector<SurfaceProbe> probes(const Vec3 &root) const {
         std::vector<SurfaceProbe> result;
+        result.reserve(grids_.size());
         for (size_t k = 0; k < grids_.size(); ++k) result.emplace_back(*bodies_[k], grids_[k], root);
         return result;
     }

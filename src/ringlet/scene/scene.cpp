@@ -4,7 +4,6 @@
 #include "ringlet/scene/settings.h"
 
 #include <algorithm>
-#include <cstring>
 #include <stdexcept>
 
 namespace ringlet {
@@ -74,9 +73,7 @@ void SceneData::exempt_coincident_pairs() {
 
 bool SceneData::is_placed() const {
     const auto same = [&](const std::vector<Vec3> &of, int first) {
-        const auto one = [](const Vec3 &a, const Vec3 &b) { // also 0 and −0, or what is not finite
-            return a == b || std::memcmp(&a, &b, sizeof(Vec3)) == 0;
-        };
+        const auto one = [](const Vec3 &a, const Vec3 &b) { return !((a - b).array().abs() > 0.0).any(); }; // 0 and −0 too
         return std::equal(of.begin(), of.end(), configuration.positions.begin() + first, one);
     };
     bool placed = same(state.positions, 0);
