@@ -24,7 +24,7 @@ from ringlet.groom.scalp import Samples, Scalp
 STEP = 2e-4  # [m] between the places that represent a line
 FARTHEST = 0.01  # [m] of a drawn line from the skin
 IDS_PER_LINE = 10**8  # id of a curve that grows on an edge: line · 10⁸ + number on the line
-CANDIDATES = 4  # for each root, at least
+CANDIDATES = 6  # for each root, at least: with 4, gaps between roots are up to a sixth larger
 MOST_CANDIDATES = 10**7
 
 Array = NDArray[np.float64]

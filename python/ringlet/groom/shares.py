@@ -152,11 +152,16 @@ def fed(
 
 
 def _on(line: NDArray, t: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Places on a line of evenly spaced points at parts of its length, and the edges there, shape (n, 3) each."""
+    """Places on a line of evenly spaced points at parts of its length, and tangents there, shape (n, 3) each.
+
+    Tangents are continuous along the line: that of an edge would jump at its ends, where rounding picks the edge.
+    """
     at = np.clip(t, 0.0, 1.0) * (len(line) - 1)
     i = np.minimum(at.astype(np.int64), len(line) - 2)
-    edge = (line[i + 1] - line[i]).astype(np.float64)
-    return line[i] + (at - i)[:, None] * edge, edge
+    between = (at - i)[:, None]
+    slopes = np.gradient(line.astype(np.float64), axis=0)
+    places = line[i] + between * (line[i + 1] - line[i]).astype(np.float64)
+    return places, (1.0 - between) * slopes[i] + between * slopes[i + 1]
 
 
 def _on_scalp(scalp: Scalp, wanted: NDArray, normals: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -38,9 +38,10 @@ public:
     }
 
 private:
-    // ω by the edge (its columns) and by γ l̄; `about` is the component of ω along the edge, by the edge.
+    // ω by the edge (its columns) and by γ l̄; `about` and `about_by_frame` are those of its component along the edge.
     struct EdgeSpin {
         Vec<T> by_edge[3], by_frame, about;
+        T about_by_frame;
     };
 
     EdgeSpin spin_of(int i) const {
@@ -48,7 +49,8 @@ private:
         EdgeSpin r;
         const T share = rows_[i].frame_free * rotation_share(rows_, i);
         r.about = share * spin(rows_[i].reference.tangent, s.tangent, s.length);
-        r.by_frame = (share / rows_[i].rest_length) * s.tangent;
+        r.about_by_frame = share / rows_[i].rest_length;
+        r.by_frame = r.about_by_frame * s.tangent;
         const Vec<T> t = (1.0 / s.length) * s.tangent;
         r.by_edge[0] = r.about.x * s.tangent + Vec<T>{T{}, t.z, -t.y}; // t × the x axis
         r.by_edge[1] = r.about.y * s.tangent + Vec<T>{-t.z, T{}, t.x};
@@ -69,7 +71,6 @@ private:
         const T across = weight * max(-dot(load, s.tangent) / s.length - stretch, T{});
         const Vec<T> twisting = (0.5 * weight) * cross(load, s.tangent), t = s.tangent;
         const T a = rows_[i].free, b = rows_[i + 1].free;
-        const T frame = rows_[i].frame_free * rotation_share(rows_, i) / rows_[i].rest_length;
         for (int c = 0; c < 3; ++c) {
             T *before = hessian.entry(4 * i + c), *after = hessian.entry(4 * i + 4 + c);
             for (int r = 0; r < 3; ++r) {
@@ -78,8 +79,8 @@ private:
                 if (r >= c) before[r - c] += a * value, after[r - c] += b * value;
                 before[4 + r - c] -= a * b * value;
             }
-            before[3 - c] -= a * frame * twisting[c];
-            hessian.entry(4 * i + 3)[1 + c] += b * frame * twisting[c];
+            before[3 - c] -= a * spin.about_by_frame * twisting[c];
+            hessian.entry(4 * i + 3)[1 + c] += b * spin.about_by_frame * twisting[c];
         }
     }
 

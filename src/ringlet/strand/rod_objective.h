@@ -35,9 +35,9 @@ public:
             gradient, hessian, [&](int i) { add_bend(i, gradient, hessian); }, [&](int i) { add_twist(i, gradient, hessian); });
         for (int i = 0; i < vertices_; ++i) { // regularises a frame without stiffness
             const T free = rows_[i].frame_free;
-            const T own =
-                strand_settings::frame_stiffness * rows_[i].bend_stiffness / (rows_[i].rest_length * rows_[i].rest_length);
-            hessian.entry(4 * i + 3)[0] += free * max(own, constant<T>(strand_settings::frame_stiffness_min)) + (1.0 - free);
+            const T bend = rows_[i].bend_stiffness / (rows_[i].rest_length * rows_[i].rest_length);
+            const T least = max(strand_settings::frame_stiffness * bend, constant<T>(strand_settings::frame_stiffness_min));
+            hessian.entry(4 * i + 3)[0] += free * least + (1.0 - free);
         }
         this->clear_held(gradient);
         for (int i = 0; i < vertices_; ++i) gradient[4 * i + 3] *= rows_[i].frame_free;
