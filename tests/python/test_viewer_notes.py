@@ -12,6 +12,11 @@ from pages import page, serving
 from PIL import Image
 from pxr import Gf, Usd, UsdGeom
 from ringlet.data.pigment import HAIR_COLORS, absorption, display_color, pigments_of_color, reflectance
+from ringlet.viewer.files import Files
+from ringlet.viewer.project import Project
+from ringlet.viewer.protocol import WriteNote
+from ringlet.viewer.publisher import Publisher
+from ringlet.viewer.reviewing import Reviewing
 from test_viewer_snapshots import LOOK, picture
 
 
@@ -64,6 +69,19 @@ def test_a_reference_is_kept_and_placed(folder: Path):
         one.send(kind="delete_reference", id=entry["id"])
         one.receive("references", references=[])
     assert not list(files.iterdir())
+
+
+def test_what_the_session_itself_wrote_is_not_published_again(folder: Path):
+    project, published = Project(folder), Publisher()
+    review = Reviewing(project, published, notice=lambda text: None)
+    review.open(Files(folder / "small.recipe.toml", project))
+    review.handle(WriteNote.model_validate({"kind": "write_note", "text": "less frizz", "look": LOOK}))
+    published.clear("notes")
+    review.reload()
+    assert not published.subjects("notes")
+    next((folder / "small.review/notes").iterdir()).unlink()
+    review.reload()
+    assert published.subjects("notes")
 
 
 @pytest.mark.parametrize("melanin, redness", [(0.95, 0.1), (0.8, 0.9), (0.6, 0.95), (0.28, 0.5), (0.05, 0.2)])

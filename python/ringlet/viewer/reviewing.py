@@ -54,7 +54,12 @@ class Reviewing:
         return self._folder.state() != self._state
 
     def reload(self) -> None:
-        """Takes in what other programs changed."""
+        """Takes in what other programs changed.
+
+        The folder is compared again, on the thread of the session: a watch in the midst of its change sees that too.
+        """
+        if not self.watch():
+            return
         self._state = self._folder.state()
         for store in (self.snapshots, self.notes, self.references, self.views):
             store.reload()
