@@ -172,8 +172,7 @@ struct SpringScene {
         configuration->limit(stay, {}, report);
         Newton newton(table, *objective, *system, *configuration, *stiffness);
         const SolverEffort effort =
-            newton.minimise(start, {.iterations = iterations, .tolerance = 1e-12, .strand_radius = radius, .linear = {}},
-                            refinement, x, report);
+            newton.minimise(start, {.iterations = iterations, .tolerance = 1e-12, .linear = {}}, refinement, x, report);
         for (int b = 0; b < blocks->count(); ++b) (*blocks)[b].commit(blocks->of(b, x), dt, effort);
         return effort;
     }

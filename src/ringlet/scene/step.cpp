@@ -164,7 +164,7 @@ SceneReport take_step(SceneData &scene, const SceneInput &input, const SceneStep
     Refinement refinement(scene.objective);
     move_to_initial_guess(scene, astray, step.tolerance, x, refinement, report);
 
-    const NewtonSettings newton{step.newton, settings.extra, step.tolerance, scene.contact.strand_radius, settings.linear};
+    const NewtonSettings newton{step.newton, settings.extra, step.tolerance, settings.linear};
     const SolverEffort effort = scene.newton.minimise(start, newton, refinement, x, report);
     commit(scene, start, step.dt, effort, x, report);
     for (const auto &[vertex, target] : scene.lagging)

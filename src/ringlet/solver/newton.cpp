@@ -13,7 +13,6 @@ Newton::Newton(VertexTable &table, Objective &objective, LinearSystem &system, C
 SolverEffort Newton::minimise(View<Vec3> start, const NewtonSettings &settings, Refinement &refinement, AlignedVector &x,
                               SceneReport &report) {
     largest_.assign(table_.objects, 0.0);
-    taken_.assign(table_.objects, 1.0);
     Iteration iteration{0, std::vector<unsigned char>(table_.objects, 0), false, SearchPath(objective_.blocks.size()), {}, {},
                         {}};
     const std::vector<Vec3> initial = configuration_.positions;
@@ -25,7 +24,7 @@ SolverEffort Newton::minimise(View<Vec3> start, const NewtonSettings &settings, 
         iteration.leads_into_contact = number == 0 && settings.iterations > 1;
         solve(settings, x, report, iteration);
         if (number < settings.iterations) set_full_step(iteration);
-        choose_path(settings, x, iteration);
+        choose_path(x, iteration);
         // In the first iteration a strand that could hardly move is limited near the pair alone, so that the rest of it
         // follows; later its shape counts.
         iteration.move = limit_path(objective_, configuration_, x, number > 0, number + 1 >= settings.iterations,
@@ -102,14 +101,11 @@ void Newton::stop_converged(double tolerance, Iteration &iteration) const {
 }
 
 // How far objects may go, and how their paths bend.
-void Newton::choose_path(const NewtonSettings &settings, const AlignedVector &x, Iteration &iteration) {
+void Newton::choose_path(const AlignedVector &x, Iteration &iteration) const {
     const BlockSet &blocks = objective_.blocks;
     SearchPath &path = iteration.path;
     path.bend.fill(0.0);
     iteration.step = max_step(blocks, x, path.straight);
-    for (size_t o = 0; o < iteration.step.size() && iteration.number < settings.iterations; ++o)
-        iteration.step[o] = std::min(iteration.step[o],
-                                     std::max(solver_settings::step_growth * taken_[o], settings.strand_radius / largest_[o]));
     shorten(blocks, iteration.step, path);
     bend(blocks, x, path);
 }
@@ -130,8 +126,6 @@ LineSearchResult Newton::search(const Iteration &iteration, SceneReport &report,
 void Newton::accept(const LineSearchResult &found, SceneReport &report, Iteration &iteration, AlignedVector &x) {
     const BlockSet &blocks = objective_.blocks;
     PlannedMove &move = iteration.move;
-    for (int o = 0; o < table_.objects; ++o)
-        if (blocks.is_active(o)) taken_[o] = iteration.step[o] * found.step[o];
     if (found.cuts > 0) { // objects no longer move in the proportion that was limited
         std::vector<unsigned char> changed(table_.count(), 0);
         for (int v = 0; v < table_.dynamic_vertices; ++v)

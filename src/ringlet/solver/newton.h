@@ -13,7 +13,6 @@ struct NewtonSettings {
     int iterations = 5;      // at most
     int extra = 60;          // more, at most, for objects that were limited and are stretched
     double tolerance = 1e-7; // [m]; converged when no coordinate of the search direction is larger
-    double strand_radius;    // of contact [m], the least of all
     LinearSettings linear;
 };
 
@@ -43,7 +42,7 @@ private:
     void find_contacts(View<Vec3> start, SceneReport &report);
     void stop_converged(double tolerance, Iteration &iteration) const;
     void solve(const NewtonSettings &settings, const AlignedVector &x, SceneReport &report, Iteration &iteration);
-    void choose_path(const NewtonSettings &settings, const AlignedVector &x, Iteration &iteration);
+    void choose_path(const AlignedVector &x, Iteration &iteration) const;
     LineSearchResult search(const Iteration &iteration, SceneReport &report, AlignedVector &x);
     void set_full_step(Iteration &iteration) const;
     void measure_left(View<Vec3> initial, const Iteration &iteration, SceneReport &report) const;
@@ -55,7 +54,6 @@ private:
     Configuration &configuration_;
     ContactStiffness &stiffness_;
     std::vector<double> largest_; // per object: largest coordinate of its last search direction [m]
-    std::vector<double> taken_;   // per object: the fraction of the last direction that it took
 };
 
 } // namespace ringlet

@@ -12,7 +12,6 @@ inline constexpr double max_bound_length = 0.3; // [m]: longer bounds hold too m
 inline constexpr double bound_margin = 0.2;     // of the radius of strands
 
 // Search path
-inline constexpr double step_growth = 4.0;   // a step is at most so many times the last one, but where the direction is short
 inline constexpr double near_impact = 0.05;  // of the path: what has an impact before takes the straight path
 inline constexpr double straight_part = 0.5; // of the direction that it then takes
 
