@@ -164,6 +164,29 @@ BOOST_AUTO_TEST_CASE(the_line_search_shortens_a_cluster_and_leaves_the_others_al
     for (size_t i = 0; i < x.size(); ++i) BOOST_TEST(std::abs(to[i] - x[i] - found.step[i / 6] * path.straight[i]) < 1e-15);
 }
 
+BOOST_AUTO_TEST_CASE(the_line_search_shortens_the_objects_that_cause_the_excess_of_their_cluster) {
+    SpringScene scene = crossing_bars();
+    scene.begin(0.01);
+    find_contacts(scene);
+    const AlignedVector x = scene.unknowns();
+    scene.system->assemble(x, {});
+    SearchPath path(scene.blocks->size());
+    scene.system->solve({.tolerance = 1e-10}, path.straight);
+    for (size_t i = 0; i < 6; ++i)
+        path.straight[i] *= 3.0; // bar 0 overshoots far, and bar 2, which does not touch it, a little
+    for (size_t i = 12; i < 18; ++i) path.straight[i] *= 2.05;
+    const ReachablePairs pairs = scene.configuration->pairs.reachable_pairs(scene.blocks->active_objects());
+    const auto steps = [&](const std::vector<unsigned char> &accepted) {
+        AlignedVector to = x.copy();
+        return line_search(*scene.objective, pairs, path, accepted, to).step;
+    };
+    BOOST_TEST(steps({1, 1, 0, 1})[2] < 1.0); // its energy rises
+    const std::vector<double> step = steps({0, 0, 0, 0});
+    BOOST_TEST(step[0] < 1.0);
+    BOOST_TEST(step[1] == step[0]); // which touches it
+    BOOST_TEST(step[2] == 1.0);
+}
+
 BOOST_AUTO_TEST_CASE(a_shortened_path_is_the_beginning_of_the_path) {
     SpringScene scene = crossing_bars();
     scene.begin(0.01);

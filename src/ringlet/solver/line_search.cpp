@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 namespace ringlet {
 namespace {
@@ -31,26 +32,43 @@ std::vector<unsigned char> leads_uphill(const std::vector<int> &cluster, const s
     return uphill;
 }
 
-// Objects that must take a shorter step: those whose own energy is above its bound, with those that they touch, in clusters
-// whose sum of energies is above that of the bounds. Where no object of such a cluster is, or `whole_clusters`, all of it must.
+// Of the objects whose energy is above its bound by `excess`, those that make up for the excess of their cluster, the largest
+// first. Where energies are convex along the path, half a step leaves at most half of an excess: so twice that of the cluster.
+std::vector<unsigned char> cause_excess(const std::vector<int> &cluster, const std::vector<double> &excess,
+                                        const std::vector<double> &excess_of_cluster) {
+    std::vector<int> above;
+    for (size_t o = 0; o < excess.size(); ++o)
+        if (!(excess[o] <= 0.0) && !(excess_of_cluster[cluster[o]] <= 0.0)) above.push_back(int(o));
+    const auto rank = [&](int o) { return std::isfinite(excess[o]) ? excess[o] : std::numeric_limits<double>::infinity(); };
+    std::stable_sort(above.begin(), above.end(), [&](int a, int b) { return rank(a) > rank(b); });
+    std::vector<double> left(excess.size());
+    for (size_t c = 0; c < left.size(); ++c) left[c] = 2.0 * excess_of_cluster[c];
+    std::vector<unsigned char> causes(excess.size(), 0);
+    for (const int o : above) {
+        causes[o] = !(left[cluster[o]] <= 0.0);
+        if (causes[o]) left[cluster[o]] -= excess[o];
+    }
+    return causes;
+}
+
+// Objects that must take a shorter step: in clusters whose energies are above their bounds in sum, those that cause it with
+// those that they touch. Where none does, or `whole_clusters`, all of the cluster must.
 std::vector<unsigned char> too_far(const Objective &objective, const std::vector<unsigned char> &accepted,
                                    const std::vector<double> &step, const std::vector<double> &energy,
                                    const std::vector<double> &bound, bool whole_clusters) {
     const size_t objects = step.size();
     const std::vector<int> &cluster = objective.couplings.clusters();
-    std::vector<double> excess(objects, 0.0); // of clusters
-    std::vector<unsigned char> rises(objects), any_rises(objects, 0);
+    std::vector<double> excess(objects, 0.0), excess_of_cluster(objects, 0.0);
     for (size_t o = 0; o < objects; ++o)
-        if (!accepted[o]) excess[cluster[o]] += energy[o] - bound[o];
-    for (size_t o = 0; o < objects; ++o) {
-        const bool may_rise = accepted[o] || step[o] == 0.0 || excess[cluster[o]] <= 0.0;
-        rises[o] = !may_rise && !(energy[o] <= bound[o]);
-        any_rises[cluster[o]] |= rises[o];
-    }
-    rises = objective.with_touched(rises);
+        if (!accepted[o]) excess_of_cluster[cluster[o]] += excess[o] = energy[o] - bound[o];
     for (size_t o = 0; o < objects; ++o)
-        if ((!any_rises[cluster[o]] || whole_clusters) && !(excess[cluster[o]] <= 0.0)) rises[o] = 1;
-    return rises;
+        if (step[o] == 0.0) excess[o] = 0.0;
+    std::vector<unsigned char> shorter = cause_excess(cluster, excess, excess_of_cluster), any(objects, 0);
+    for (size_t o = 0; o < objects; ++o) any[cluster[o]] |= shorter[o];
+    shorter = objective.with_touched(shorter);
+    for (size_t o = 0; o < objects; ++o)
+        if ((!any[cluster[o]] || whole_clusters) && !(excess_of_cluster[cluster[o]] <= 0.0)) shorter[o] = 1;
+    return shorter;
 }
 
 } // namespace
