@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from ringlet.data.errors import UserError
 from ringlet.viewer.scene import FrameState
+from ringlet.viewer.watcher import stamp_of
 
 
 class FrameSource(Protocol):
@@ -43,18 +44,11 @@ class WatchedFile:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self._opened_stamp = self._stamp()
+        self._opened_stamp = stamp_of(path)
 
     def unchanged(self) -> bool:
         """Whether the file was not replaced. A deleted file stays readable while it is open."""
-        return self._stamp() in (self._opened_stamp, None)
-
-    def _stamp(self) -> tuple[int, int, int] | None:
-        try:
-            status = self.path.stat()
-        except OSError:
-            return None
-        return status.st_ino, status.st_size, status.st_mtime_ns
+        return stamp_of(self.path) in (self._opened_stamp, None)
 
 
 class FileFrames:

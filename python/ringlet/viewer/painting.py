@@ -117,7 +117,7 @@ class Painter:
     def _texels_of(self, groom: Groom, shape: tuple[int, ...]) -> Texels:
         if self._texels is None or self._texels.mesh is not groom.scalp or self._texels.shape != shape:
             mesh = groom.scalp
-            region = mesh.region(groom.region) if groom.region else np.arange(len(mesh.triangles))
+            region = mesh.region(groom.region)
             self._texels = Texels(mesh, region, (shape[0], shape[1]))
         return self._texels
 
@@ -125,13 +125,13 @@ class Painter:
     def _middle(groom: Groom) -> float:
         """Position of the plane of symmetry [m]."""
         mesh = groom.scalp
-        region = mesh.region(groom.region) if groom.region else np.arange(len(mesh.triangles))
+        region = mesh.region(groom.region)
         x = mesh.points[np.unique(mesh.triangles[region]), 0]
         return 0.5 * float(x.min() + x.max())
 
     def _message(self, place: Place, values: Values, groom: Groom) -> bytes:
         mesh = groom.scalp
-        region = mesh.region(groom.region) if groom.region else np.arange(len(mesh.triangles))
+        region = mesh.region(groom.region)
         assert mesh.uv is not None
         kept, corners = np.unique(mesh.triangles[region], return_inverse=True)
         uv = np.zeros((len(kept), 2))
