@@ -80,6 +80,9 @@ class Editing:
             case protocol.Step():
                 for file in files.step(message.kind):
                     self.edited(file)
+            case protocol.UseRun():
+                files.document("shot").apply(self._playback.text_of_run(message.run))
+                self.edited("shot")
             case protocol.Resolve():
                 conflicts.resolve(files.document(message.file), message)
                 self.edited(message.file)

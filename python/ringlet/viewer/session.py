@@ -272,7 +272,7 @@ class Session:
             case protocol.Play():
                 self._playback.play(message)
             case protocol.Against():
-                self._playback.set_comparison(message.name)
+                self._playback.set_comparison(message)
             case protocol.Restore() if self.recovered:
                 pass  # the journal had what the page still knows
             case _:
