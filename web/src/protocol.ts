@@ -327,7 +327,7 @@ export interface ShowMap {
 export interface Paint {
   kind: "paint";
   place: (string | number)[];
-  tool: "add" | "remove" | "smooth";
+  tool: "add" | "remove" | "smooth" | "comb";
   at: [number, number, number];
   by: [number, number, number];
   radius: number;
@@ -338,7 +338,7 @@ export interface Paint {
   resting?: boolean;
 }
 
-/** Draws the helper curve that a setting names; a setting without one gets a new curve. */
+/** Draws the helper curve that a setting names; a setting without one gets a new curve, a list one more. */
 export interface Draw {
   kind: "draw";
   place: (string | number)[];
@@ -831,6 +831,7 @@ export interface Painted {
   points: Float32Array;
   triangles: Uint32Array;
   values: Uint8Array;
+  directions: Float32Array;
 }
 
 /** All snapshots of the recipe, the oldest first. */

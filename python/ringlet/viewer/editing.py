@@ -113,7 +113,7 @@ class Editing:
                 self._pages.send("painted", self.strokes.paint(message))
                 self._stroked(resting=message.resting)
             case protocol.Draw():
-                draw(files, message, self._viewport.made("draw").groom.origin)
+                draw(files, message, self._viewport.made("draw").groom)
                 self.edited("recipe")
             case protocol.ListPresets():
                 page.queue.put("presets", self._presets.message())

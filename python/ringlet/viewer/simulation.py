@@ -68,8 +68,9 @@ class Simulation:
             self._checkpoints = {frame: kept for frame, kept in self._checkpoints.items() if frame <= restart_frame}
         else:
             self._checkpoints = {}
-        self._keep_take(shot)
-        self.take = self.take.up_to(restart_frame)
+        before, self.take = self.take, self.take.up_to(restart_frame)
+        if len(self.take.made) < len(before.made):
+            self._keep(before, shot)
         self.rolled, self.key, self.state = 0, self.key + 1, "rolling"
         self._stopping = threading.Event()
         self._running.set()
@@ -78,10 +79,10 @@ class Simulation:
         self._thread.start()
         self._changed()
 
-    def _keep_take(self, shot: Shot) -> None:
-        """Keeps the frames of the timeline, unless a run of this shot makes the same again."""
-        if self.take.made and inputs(self.take.last.shot) != inputs(shot):
-            self.takes.setdefault(self.take.last.number, self.take)
+    def _keep(self, take: Take, shot: Shot) -> None:
+        """Keeps an earlier take, unless a run of this shot makes the same frames again."""
+        if inputs(take.last.shot) != inputs(shot):
+            self.takes.setdefault(take.last.number, take)
             while len(self.takes) > MAX_TAKES:
                 del self.takes[min(self.takes)]
 

@@ -118,8 +118,8 @@ class Viewport:
         scalp = groom.scalp
         names = protocol.Names(
             regions=sorted(scalp.regions),
-            maps=sorted({*scalp.maps, *scalp.textures}),
-            vectors=sorted(scalp.vectors),
+            maps=sorted({*scalp.maps, *(name for name, one in scalp.textures.items() if not one.colored)}),
+            vectors=sorted({*scalp.vectors, *(name for name, one in scalp.textures.items() if one.colored)}),
             curves=sorted(curves),
         )
         if names != self._names:

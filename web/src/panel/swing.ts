@@ -86,7 +86,7 @@ export class SwingChart {
       mark(timeline, frame),
     );
     this.scale.textContent = speed(top);
-    const told = (series: Series, name: string, kind: string, text: (value: number) => string, of = run) => {
+    const entry = (series: Series, name: string, kind: string, text: (value: number) => string, of = run) => {
       const value = values(series).find(([at]) => at === frame)?.[1];
       const style = `--hue: ${runHue(of)}`;
       return h("span", {}, h("i", { class: kind, style }), `${name} `, h("b", {}, value === undefined ? "–" : text(value)));
@@ -94,10 +94,10 @@ export class SwingChart {
     const free = compared && `${compared.contact ? "tips" : "free swing, without contact,"} of run ${compared.number}`;
     this.legend.replaceChildren(
       h("span", { class: "swing-title" }, "Mean speed of"),
-      told(tips, "tips", "tips", speed),
-      ...(compared ? [told(others, free!, "tips other", speed, compared.number)] : []),
-      told(roots, "roots", "roots", speed),
-      told(kept, "motion kept, estimated", "kept", (value) => `${Math.round(100 * value)} %`),
+      entry(tips, "tips", "tips", speed),
+      ...(compared ? [entry(others, free!, "tips other", speed, compared.number)] : []),
+      entry(roots, "roots", "roots", speed),
+      entry(kept, "motion kept, estimated", "kept", (value) => `${Math.round(100 * value)} %`),
     );
     const highest = (series: Series) => speed(Math.max(0, ...values(series).map(([, value]) => value)));
     this.chart.setAttribute("aria-label", `Mean speed in each frame: tips up to ${highest(tips)}, roots up to ${highest(roots)}`);
