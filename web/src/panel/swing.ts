@@ -57,6 +57,11 @@ export class SwingChart {
     return timeline?.kept.find(({ number }) => timeline.against === `run ${number}`);
   }
 
+  /** Whether hair touches in the shot. */
+  private get touches(): boolean {
+    return this.model.value("shot", ["contact", "on"]) === true;
+  }
+
   private frameAt(event: PointerEvent): number {
     const { first, last } = this.model.timeline!;
     const box = this.chart.getBoundingClientRect();
@@ -82,7 +87,7 @@ export class SwingChart {
       line(timeline, kept, 1, "kept"),
       line(timeline, roots, top, "roots"),
       ...(compared ? [line(timeline, others, top, "tips other", compared.number)] : []),
-      line(timeline, tips, top, "tips", run),
+      ...[...new Set(timeline.runs)].map((run) => line(timeline, madeBy(timeline, run), top, "tips", run)),
       mark(timeline, frame),
     );
     this.scale.textContent = speed(top);
@@ -91,13 +96,13 @@ export class SwingChart {
       const style = `--hue: ${runHue(of)}`;
       return h("span", {}, h("i", { class: kind, style }), `${name} `, h("b", {}, value === undefined ? "–" : text(value)));
     };
-    const free = compared && `${compared.contact ? "tips" : "free swing, without contact,"} of run ${compared.number}`;
+    const free = compared && `${this.touches && !compared.contact ? "free swing, without contact," : "tips"} of run ${compared.number}`;
     this.legend.replaceChildren(
       h("span", { class: "swing-title" }, "Mean speed of"),
       entry(tips, "tips", "tips", speed),
       ...(compared ? [entry(others, free!, "tips other", speed, compared.number)] : []),
       entry(roots, "roots", "roots", speed),
-      entry(kept, "motion kept, estimated", "kept", (value) => `${Math.round(100 * value)} %`),
+      ...(values(kept).length ? [entry(kept, "motion kept, estimated", "kept", (value) => `${Math.round(100 * value)} %`)] : []),
     );
     const highest = (series: Series) => speed(Math.max(0, ...values(series).map(([, value]) => value)));
     this.chart.setAttribute("aria-label", `Mean speed in each frame: tips up to ${highest(tips)}, roots up to ${highest(roots)}`);
@@ -121,6 +126,17 @@ export class SwingChart {
 /** Frames and their numbers, where these are known. */
 function values({ frames, swings, number }: Series): [number, number][] {
   return Array.from(frames, (frame, k): [number, number] => [frame, swings[NUMBERS * k + number] ?? NaN]).filter(([, value]) => !Number.isNaN(value));
+}
+
+/** Speeds of the tips in the frames of one run, and in the one before, from which its line goes on. */
+function madeBy({ frames, runs, swings }: Timeline, run: number): Series {
+  const from = runs.indexOf(run);
+  const chosen = Array.from(frames.keys()).filter((k) => runs[k] === run || k === from - 1);
+  return {
+    frames: chosen.map((k) => frames[k]),
+    swings: Float32Array.from(chosen.flatMap((k) => [...swings.slice(NUMBERS * k, NUMBERS * (k + 1))])),
+    number: 0,
+  };
 }
 
 function line({ first, last }: Timeline, series: Series, top: number, kind: string, run = 1): SVGElement {

@@ -7,6 +7,7 @@ import type { Painted } from "../protocol";
 const LOW = [0.05, 0.06, 0.1];
 const HIGH = [1.0, 0.62, 0.3];
 const LENGTH = 0.006; // of the line of a direction [m]
+const ABOVE = 0.0015; // of these lines over the skin [m]
 
 export class PaintedMap {
   readonly scene = new Scene();
@@ -42,15 +43,18 @@ export class PaintedMap {
     values.forEach((value, k) => {
       for (let c = 0; c < 3; c++) colors[3 * k + c] = LOW[c] + (value / 255) * (HIGH[c] - LOW[c]);
     });
-    const ends: number[] = [];
-    values.forEach((value, k) => {
-      if (!value || !directions.length) return;
-      for (const part of [0, LENGTH]) for (let c = 0; c < 3; c++) ends.push(points[3 * k + c] + part * directions[3 * k + c]);
-    });
-    this.lines.geometry.dispose();
-    this.lines.geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(new Float32Array(ends), 3));
     this.geometry.setIndex(new BufferAttribute(triangles, 1));
     this.geometry.setAttribute("position", new BufferAttribute(points, 3));
     this.geometry.setAttribute("color", new BufferAttribute(colors, 3));
+    this.geometry.computeVertexNormals();
+    const normals = this.geometry.getAttribute("normal").array;
+    const ends: number[] = [];
+    values.forEach((value, k) => {
+      if (!value || !directions.length) return;
+      for (const part of [0, LENGTH])
+        for (let i = 3 * k; i < 3 * k + 3; i++) ends.push(points[i] + ABOVE * normals[i] + part * directions[i]);
+    });
+    this.lines.geometry.dispose();
+    this.lines.geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(new Float32Array(ends), 3));
   }
 }
