@@ -29,6 +29,7 @@ PLAIN: dict[Any, str] = {
 # What messages of the server consist of.
 PARTS = (
     protocol.Stage,
+    protocol.KeptRun,
     protocol.Change,
     protocol.Fix,
     protocol.Difference,

@@ -236,6 +236,29 @@ def test_a_value_is_set_for_one_lock_and_reverted(opened: Any):
     assert not review.errors
 
 
+def test_a_value_of_several_locks_is_set_and_reverted_in_one_step(opened: Any):
+    review: Review = opened()
+    before = np.array(review.get("Array.from(ringlet.viewer.hair.a.locks.points)")).reshape(8, -1)
+    ids = review.get("[2, 5].map((row) => String(ringlet.viewer.hair.a.locks.ids[row]))")
+    change = f"{{ kind: 'set', changes: [[['curl', 'pitch', 'lock', '{ids[0]}'], 2]], gesture: 9 }}"
+    review.get(f"(ringlet.lock.choose(2, 5), ringlet.model.say({change}))")
+    review.page.get_by_role("switch", name="values of these locks alone").check()
+    review.drag(review.slider("curl.width"), 0.35, 0.9)
+    review.until("Object.keys(ringlet.model.documents.recipe.said.curl.width.lock ?? {}).length === 2")
+    review.settled()
+    after = np.array(review.get("Array.from(ringlet.viewer.hair.a.locks.points)")).reshape(8, -1)
+    moved = np.abs(after - before).max(axis=1)
+    assert moved[[2, 5]].min() > 0.001 and np.delete(moved, [2, 5]).max() == 0.0
+    listed = review.page.locator(".lock .own").first.locator("li").all_inner_texts()
+    assert any("curl pitch" in one and "of 1 of 2" in one for one in listed)
+    assert any("curl width" in one and " of " not in one for one in listed)
+    review.page.get_by_label("Not its own curl width").click()
+    review.until("!Object.keys(ringlet.model.documents.recipe.said.curl.width.lock ?? {}).length")
+    review.page.keyboard.press("Control+z")
+    review.until("Object.keys(ringlet.model.documents.recipe.said.curl.width.lock ?? {}).length === 2")
+    assert not review.errors
+
+
 def test_regions_and_overlays_are_chosen_from_lists(opened: Any, folder: Path):
     recipe = folder / "small.recipe.toml"
     recipe.write_text(recipe.read_text() + '[[nail]]\nreach = "2 cm"\n[[shape]]\nop = "scraggle"\n')

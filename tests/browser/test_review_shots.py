@@ -108,7 +108,7 @@ def test_a_changed_cloth_material_is_simulated(opened: Any, folder: Path):
     ringlet.write_groom(groom, folder / "groom.usda")
     cache = ringlet.simulate(shot, groom)
     ringlet.write_cache(cache, folder / "groom.usda", folder / "cache.usda")
-    review.page.get_by_label("Compare with a cache").select_option("cache.usda")
+    review.page.get_by_label("Compare with a run or cache").select_option("cache.usda")
     review.until("ringlet.viewer.compared && ringlet.model.timeline.against == 'cache.usda'")
     review.get("ringlet.timeline.show(4)")
     review.until("ringlet.timeline.settled && ringlet.timeline.drawn.against")
@@ -167,7 +167,7 @@ def test_a_shot_is_compared_with_a_cache_and_overlays(opened: Any, folder: Path)
         assert different(review.picture(), plain) > 0.002  # few hairs cover few pixels
     assert review.page.locator('[data-number="inside"]').is_visible()
     ringlet.write_cache(cache, folder / "groom.usda", folder / "cache.usda")  # the open page is notified
-    review.page.get_by_label("Compare with a cache").select_option("cache.usda")
+    review.page.get_by_label("Compare with a run or cache").select_option("cache.usda")
     review.until("ringlet.viewer.compared && ringlet.model.timeline.against == 'cache.usda'")
     review.until("ringlet.viewer.hair.b.table")
     review.page.get_by_label("Overlay").select_option("")
@@ -175,4 +175,47 @@ def test_a_shot_is_compared_with_a_cache_and_overlays(opened: Any, folder: Path)
     review.until("ringlet.timeline.settled")
     left, right = np.split(review.picture(), 2, axis=1)
     assert different(left, right) > 0.002
+    assert not review.errors
+
+
+def test_an_earlier_run_is_compared_by_wipe_and_the_chart_shows_its_swing(opened: Any):
+    review: Review = opened("small.shot.toml")
+    page = review.page
+
+    def run() -> None:
+        key = review.get("ringlet.model.timeline.key")
+        page.get_by_role("button", name=re.compile("^Run( again)?$")).click()
+        review.until(f"ringlet.model.timeline.key != {key} && ringlet.model.timeline.state == 'done'")
+
+    review.until("ringlet.model.timeline")
+    run()
+    change = "{ kind: 'set', file: 'shot', changes: [[['strands', 'bend_scale'], 0.001]], gesture: 1 }"
+    review.get(f"ringlet.model.say({change})")
+    review.until("ringlet.model.timeline.stale.every((one) => one)")
+    assert page.locator(".runs .stale").count() == 1
+    run()
+    assert page.locator(".runs span").count() == 1 and page.locator(".runs .stale").count() == 0
+    review.get("ringlet.timeline.goTo(4)")
+    review.until("ringlet.timeline.settled")
+    now = review.picture()
+    page.get_by_label("Compare with a run or cache").select_option("run 1")
+    review.until("ringlet.viewer.compared && ringlet.model.timeline.against == 'run 1'")
+    page.get_by_label("Arrangement of the two looks").select_option("wipe")
+    review.get("ringlet.timeline.goTo(4)")
+    review.until("ringlet.timeline.settled && ringlet.timeline.drawn.against")
+    wiped = review.picture()
+    middle = wiped.shape[1] // 2
+    assert different(wiped[:, : middle - 4], now[:, : middle - 4]) < different(wiped[:, middle:], now[:, middle:])
+    assert page.get_by_role("button", name="Changes (1)").is_visible()
+    chart = page.locator(".swing-plot svg")
+    assert chart.is_visible() and "Mean speed in each frame: tips up to" in chart.get_attribute("aria-label")
+    assert chart.locator("polyline.tips").count() == 2 and chart.locator("polyline.roots").count() == 1
+    assert "tips of run 1" in page.locator(".swing-legend").inner_text()
+    box = chart.bounding_box()
+    page.mouse.click(box["x"] + 2, box["y"] + 20)
+    assert review.get("ringlet.timeline.current") == 1
+    page.get_by_role("button", name="Use its settings").click()
+    review.until("ringlet.model.said('shot', ['strands', 'bend_scale']) === undefined")
+    page.locator(".take", has_text="run 1").click()
+    review.until("!ringlet.viewer.compared")
     assert not review.errors

@@ -133,8 +133,8 @@ def test_texels_lie_on_the_mesh_and_smoothing_keeps_a_constant():
     half = np.full((40, 40), 0.5, np.float32)
     ball = Ball(np.array([0.5, 0.0, 0.5]), np.zeros(3), 0.2)
     weight = ball.falloff(texels.position)
-    assert np.allclose(texels.changed(half, weight, "smooth"), 0.5)
-    added = texels.changed(half, weight, "add")
+    assert np.allclose(texels.changed(half, weight, None), 0.5)
+    added = texels.changed(half, weight, 1.0)
     assert added.max() > 0.95 and (added[texels.covered][weight == 0.0] == 0.5).all()
 
 
@@ -159,3 +159,64 @@ def test_a_drawn_line_becomes_the_curve_of_a_parting_in_one_undo_step(folder: Pa
         assert not document["dirty"] and not document["undo"]
         one.send(kind="draw", place=["guides", "part", "line"], points=[[0, 0.09, 0]] * 2, gesture=5)
         assert one.receive_trouble() == "draw: the stroke has no length; draw a line over the scalp"
+
+
+def test_directions_are_combed_into_a_picture_that_turns_the_guides(folder: Path):
+    unwrap(folder)
+    place = ["guides", "direction"]
+    with serving(folder) as client, page(client) as one:
+        one.receive("numbers")
+        before = one.latest("guides")["points"].reshape(6, -1, 3)
+        one.send(kind="show_map", place=place)
+        shown = one.receive("painted", map="")
+        assert not shown["values"].any() and not shown["directions"].any()
+        common = {"kind": "paint", "place": place, "tool": "comb", "radius": 0.2, "falloff": "flat", "gesture": 5}
+        one.send(at=[0.0, 0.09, 0.0], by=[0.0, 0.0, 0.0], resting=False, **common)
+        one.send(at=[0.0, 0.0, 0.0], by=[0.1, 0.0, 0.0], resting=True, **common)
+        shown = one.latest("painted", map="guides_direction")
+        while not shown["values"].any():
+            shown = one.receive("painted")
+        assert np.allclose(shown["directions"].reshape(-1, 3), (1.0, 0.0, 0.0), atol=0.01)
+        document = one.receive("document", undo=True)
+        assert document["said"]["guides"]["direction"] == "guides_direction"
+        while (now := one.receive("guides")["points"].reshape(6, -1, 3)) is None or np.allclose(now, before):
+            pass
+        tips, tips_before = now[:, 1] - now[:, 0], before[:, 1] - before[:, 0]
+        assert (tips[:, 0] > tips_before[:, 0] - 1e-6).all() and (tips[:, 0] - tips_before[:, 0]).max() > 0.001
+        one.latest("numbers", draft=False, revision=document["revision"])
+        assert "guides_direction" in one.latest("names")["vectors"]
+        one.send(kind="save")
+        one.receive("saved")
+        one.send(kind="undo")
+        assert not one.receive("document", undo=False)["said"].get("maps")
+    with Image.open(folder / "small.guides_direction.png") as picture:
+        assert picture.mode == "RGB" and picture.getpixel((256, 256)) == (255, 128, 128)
+    made = ringlet.build_groom(folder / "small.recipe.toml").guides.points.reshape(6, -1, 3)
+    assert np.allclose(made[:, 1] - made[:, 0], tips, atol=1e-5)
+
+
+def test_a_drawn_guide_is_a_guide_of_the_recipe_in_one_undo_step(folder: Path):
+    place = ["guides", "drawn"]
+    with serving(folder) as client, page(client) as one:
+        one.receive("numbers")
+        before = one.latest("guides")["points"].reshape(6, -1, 3)
+        upwards = [[0.0, 0.09 + 0.05 * t, 0.02 * t * t] for t in np.linspace(0.0, 1.0, 30)]
+        one.send(kind="draw", place=place, points=upwards, gesture=3)
+        document = one.receive("document", dirty=True)
+        assert document["said"]["guides"]["drawn"] == ["guides_drawn"]
+        guides = one.receive("guides")["points"].reshape(7, -1, 3)
+        assert np.array_equal(guides[:6], before)
+        assert np.allclose(guides[6][[0, -1]], [[0, 0.09, 0], [0, 0.14, 0.02]], atol=2e-4)
+        sideways = [[0.09 + 0.05 * t, 0.02, 0.0] for t in np.linspace(0.0, 1.0, 30)]
+        one.send(kind="draw", place=place, points=sideways, gesture=4)
+        document = one.receive("document")
+        assert document["said"]["guides"]["drawn"] == ["guides_drawn", "guides_drawn_2"]
+        assert np.array_equal(one.receive("guides")["points"].reshape(8, -1, 3)[:7], guides)
+        one.send(kind="undo")
+        document = one.receive("document")
+        assert document["said"]["guides"]["drawn"] == ["guides_drawn"] and list(document["said"]["curves"])
+        one.send(kind="undo")
+        document = one.receive("document")
+        assert not document["dirty"] and not document["undo"]
+        one.send(kind="draw", place=place, points=[[0, 0.2, 0], [0, 0.3, 0]], gesture=5)
+        assert one.receive_trouble() == "draw: the guide begins 110 mm off the scalp; begin it where the hair grows"

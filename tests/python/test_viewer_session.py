@@ -185,7 +185,7 @@ def test_only_caches_are_offered_for_comparison(folder: Path, tmp_path, monkeypa
     checked: list[str] = []
     is_cache = io.is_cache
     monkeypatch.setattr(io, "is_cache", lambda path: checked.append(path.name) or is_cache(path))
-    monkeypatch.setattr("ringlet.viewer.session.FILES_INTERVAL", 0.1)
+    monkeypatch.setattr("ringlet.viewer.disk_changes.FILES_INTERVAL", 0.1)
     with serving(folder) as client:
         with page(client) as one:
             assert offered(one) == ["cache.usdc", "text.usda"] and "cache.usdc" in checked

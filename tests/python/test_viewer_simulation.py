@@ -9,7 +9,6 @@ from types import SimpleNamespace
 import numpy as np
 from ringlet.shot import parse_shot
 from ringlet.viewer import simulation
-from ringlet.viewer.frame_cache import FrameCache
 from ringlet.viewer.simulation import Simulation
 
 
@@ -34,16 +33,15 @@ def test_a_run_in_a_long_frame_is_replaced_without_waiting_for_it(monkeypatch):
         return b"slow" if state.statistics["slow"] else b"quick"
 
     monkeypatch.setattr(simulation.api, "start_motion", start_motion)
-    frames = FrameCache()
-    run = Simulation(frames, lambda: done.set() if run.state == "done" else None, print)
-    stage = SimpleNamespace(groom=None, frame=frame)
-    run.start(shot, stage)
+    run = Simulation(iter(range(1, 9)).__next__, lambda: done.set() if run.state == "done" else None, print)
+    stage = SimpleNamespace(groom=None, frame=frame, speeds=lambda *_: (0.0, 0.0))
+    run.start(shot, "", stage)
     assert entered.wait(10.0)
     begin = time.monotonic()
-    run.start(shot, stage)
+    run.start(shot, "", stage)
     run.stop()
-    run.start(shot, stage)
+    run.start(shot, "", stage)
     assert time.monotonic() - begin < 1.0
     release.set()
     assert done.wait(10.0)
-    assert [frames.message(number) for number in frames.frames] == [b"quick", b"quick"]
+    assert [run.take.message(number) for number in run.take.frames] == [b"quick", b"quick"]

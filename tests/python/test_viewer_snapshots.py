@@ -172,7 +172,7 @@ def test_wrong_requests_are_refused_in_one_line_and_write_nothing(folder: Path, 
 
 
 def test_what_another_program_changes_in_the_folder_is_seen(folder: Path, monkeypatch):
-    monkeypatch.setattr("ringlet.viewer.session.FILES_INTERVAL", 0.1)
+    monkeypatch.setattr("ringlet.viewer.disk_changes.FILES_INTERVAL", 0.1)
     with serving(folder) as client, page(client) as one:
         one.receive("snapshots")
         taken = take(one, note="first")

@@ -11,11 +11,12 @@ import pytest
 from pages import Page, page, serving
 from ringlet.data.errors import UserError
 from ringlet.viewer import protocol
+from ringlet.viewer.conflicts import differences
 from ringlet.viewer.document import set_value
 from ringlet.viewer.grooming import Grooming
 from ringlet.viewer.merge import Versions
+from ringlet.viewer.pages import Page as SessionPage
 from ringlet.viewer.project import Project
-from ringlet.viewer.session import Page as SessionPage
 from ringlet.viewer.session import Session
 
 from ringlet.groom import read_recipe
@@ -104,7 +105,7 @@ def test_a_conflict_is_shown_and_saving_is_refused_until_it_is_resolved(conflict
 
 
 def test_a_conflict_is_noticed_at_saving_before_the_watcher_has_seen_it(folder: Path, monkeypatch):
-    monkeypatch.setattr("ringlet.viewer.session.WATCH_INTERVAL", 60.0)
+    monkeypatch.setattr("ringlet.viewer.disk_changes.WATCH_INTERVAL", 60.0)
     recipe = folder / "small.recipe.toml"
     with serving(folder) as client, page(client) as one:
         edit(one, 2.0)
@@ -195,7 +196,7 @@ def test_a_draft_is_completed_when_no_hand_is_heard(folder: Path):
 
 
 def test_a_draft_is_completed_when_its_page_leaves(folder: Path, monkeypatch):
-    monkeypatch.setattr("ringlet.viewer.session.REST_AFTER", 60.0)
+    monkeypatch.setattr("ringlet.viewer.editing.REST_AFTER", 60.0)
     with serving(folder) as client, page(client, "two") as two:
         two.receive("numbers", draft=False)
         with page(client, "one") as one:
@@ -232,7 +233,8 @@ def test_frames_tell_their_run_and_come_back_with_their_groom(folder: Path):
         timeline = one.receive("timeline", state="done")
         assert timeline["runs"].tolist() == [1] * 4 and not timeline["stale"].any()
         one.send(kind="set", file="shot", changes=[[["strands", "bend_scale"], 0.5]], gesture=1)
-        assert one.receive("timeline")["stale"].all()
+        while not one.receive("timeline")["stale"].all():
+            pass
         one.send(kind="play", action="again_from", frame=2)
         timeline = one.receive("timeline", state="done")
         assert timeline["runs"].tolist() == [1, 1, 2, 2] and timeline["stale"].tolist() == [1, 1, 0, 0]
@@ -405,7 +407,7 @@ def test_a_hundred_kills_outside_writes_and_leaving_pages_lose_nothing(folder: P
             writes += 1
             recipe.write_text(set_value(recipe.read_text(), ["curl", there[lock % len(there)], "lock", str(lock)], 0.5))
             if chance.random() < 0.5:  # the watcher sees it
-                session._meet_disk({recipe})
+                session._disk.meet({recipe})
         if chance.random() < 0.5:
             leaves += 1
             session.leave(client.page)
@@ -424,7 +426,7 @@ def test_a_hundred_kills_outside_writes_and_leaving_pages_lose_nothing(folder: P
 
 def _merge(session: Session) -> protocol.Resolve:
     """Keeps all that each side changed."""
-    names = [(one.name, one.mine != one.base) for one in session.files.differences("recipe")]
+    names = [(one.name, one.mine != one.base) for one in differences(session.files.recipe)]
     mine = [name for name, changed in names if changed]
     return protocol.Resolve(choice="merge", mine=mine, theirs=[name for name, changed in names if not changed])
 

@@ -60,6 +60,7 @@ export const ICONS = {
   keys: "M3 6h14v8H3zM6 9h.01M9 9h.01M12 9h.01M14 9h.01M7 11.5h6",
   share: "M10 12V3M6.5 6.5L10 3l3.5 3.5M5 9.5H4v8h12v-8h-1",
   link: "M8.5 11.5l3-3M9 6l1.7-1.7a3.5 3.5 0 0 1 5 5L14 11M11 14l-1.7 1.7a3.5 3.5 0 0 1-5-5L6 9",
+  chart: "M3 16V4M3 16h14M5 12c2-7 3-7 4.5-2S13 14 16 6",
   swap: "M3 7h12l-3-3M17 13H5l3 3",
   close: "M5 5l10 10M15 5L5 15",
   tray: "M3 12h14v5H3zM5 8.5h10M7 5h6",

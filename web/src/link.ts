@@ -15,7 +15,7 @@ const WRONG = 4400;
 const CHANGES = [
   ...["set", "arrange", "mute", "save", "use_copy", "resolve", "restore", "isolate", "drag", "sculpt", "unsculpt", "pick_color"],
   ...["take_snapshot", "edit_snapshot", "delete_snapshot", "load_snapshot", "write_note", "edit_note", "delete_note"],
-  ...["place_reference", "delete_reference", "keep_view", "take", "keep", "paint", "draw"],
+  ...["place_reference", "delete_reference", "keep_view", "take", "keep", "paint", "draw", "use_run"],
 ];
 const STORE = "ringlet-owed"; // what this tab has not been answered when it is left
 

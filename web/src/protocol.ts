@@ -12,6 +12,16 @@ export interface Stage {
   solo: boolean;
 }
 
+/** An earlier take of the shot, by the number of its last run. */
+export interface KeptRun {
+  number: number;
+  first: number;
+  last: number;
+  contact: boolean;
+  same_groom: boolean;
+  changes: string[];
+}
+
 /** A line of the diff against the saved file. */
 export interface Change {
   sign: "+" | "-" | " ";
@@ -317,7 +327,7 @@ export interface ShowMap {
 export interface Paint {
   kind: "paint";
   place: (string | number)[];
-  tool: "add" | "remove" | "smooth";
+  tool: "add" | "remove" | "smooth" | "comb";
   at: [number, number, number];
   by: [number, number, number];
   radius: number;
@@ -328,7 +338,7 @@ export interface Paint {
   resting?: boolean;
 }
 
-/** Draws the helper curve that a setting names; a setting without one gets a new curve. */
+/** Draws the helper curve that a setting names; a setting without one gets a new curve, a list one more. */
 export interface Draw {
   kind: "draw";
   place: (string | number)[];
@@ -402,10 +412,17 @@ export interface Play {
   frame?: number;
 }
 
-/** Shows the frames of another cache of the project for comparison; an empty name removes them. */
+/** Compares the shot with a cache of the project or an earlier take; without a name and a run with nothing. */
 export interface Against {
   kind: "against";
   name?: string;
+  run?: number;
+}
+
+/** Gives the shot the settings of an earlier take, as one undo step. */
+export interface UseRun {
+  kind: "use_run";
+  run: number;
 }
 
 /** Path-traces what is seen, in place of the last render of the page; ``Rendered`` answers, step by step. */
@@ -705,7 +722,7 @@ export interface Frame {
   curl: Uint8Array;
 }
 
-/** State of the simulation, and the existing frames of the shot and of the cache to compare with. */
+/** State of the simulation, and the existing frames of the shot and of what it is compared with. */
 export interface Timeline {
   kind: "timeline";
   first: number;
@@ -716,10 +733,13 @@ export interface Timeline {
   preroll: number;
   key: number;
   against: string;
+  kept: KeptRun[];
   frames: Float64Array;
   beside: Float64Array;
   runs: Int32Array;
   stale: Uint8Array;
+  swings: Float32Array;
+  beside_swings: Float32Array;
 }
 
 /** A look that is compared; ``a`` is the open recipe. */
@@ -811,6 +831,7 @@ export interface Painted {
   points: Float32Array;
   triangles: Uint32Array;
   values: Uint8Array;
+  directions: Float32Array;
 }
 
 /** All snapshots of the recipe, the oldest first. */
@@ -894,6 +915,7 @@ export type FromPage =
   | Hand
   | Play
   | Against
+  | UseRun
   | Render
   | StopRender
   | Watch

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel
@@ -54,7 +56,7 @@ def painted(name: str, curves: Curves, scalp: Mesh, what: str) -> NDArray[np.flo
     if name in own:
         values = np.asarray(curves.curve[name], np.float64)
     elif name in scalp.textures:
-        values = _from_texture(name, curves, scalp, what)
+        values = _from_texture(name, curves, scalp, what, scalp.textures[name].at)
     elif name in scalp.maps:
         corners = scalp.maps[name][curves.curve["root_triangle"]]
         values = np.einsum("kc,kc->k", corners, curves.curve["root_barycentric"])
@@ -74,6 +76,8 @@ def painted(name: str, curves: Curves, scalp: Mesh, what: str) -> NDArray[np.flo
 
 def painted_directions(name: str, curves: Curves, scalp: Mesh, what: str) -> NDArray[np.float64]:
     """The directions painted on the scalp under a name, at the root of each curve; shape (count, 3)."""
+    if name in scalp.textures and scalp.textures[name].colored:
+        return _from_texture(name, curves, scalp, what, scalp.textures[name].directions_at)
     if name not in scalp.vectors:
         remedy = did_you_mean(name, scalp.vectors) if scalp.vectors else "; paint a primvar of vectors"
         raise UserError(f"{what} is '{name}', which {scalp.name} has no directions for{remedy}")
@@ -97,8 +101,17 @@ def region(name: str, scalp: Mesh, what: str) -> NDArray[np.int32]:
         raise UserError(f"{what}: {error.args[0]}") from None
 
 
-def _from_texture(name: str, curves: Curves, scalp: Mesh, what: str) -> NDArray[np.float64]:
-    """A texture at the roots, linear between its pixels; beyond its edges it repeats."""
+def _from_texture(
+    name: str,
+    curves: Curves,
+    scalp: Mesh,
+    what: str,
+    read: Callable[[NDArray[np.integer], NDArray[np.integer]], NDArray[np.float64]],
+) -> NDArray[np.float64]:
+    """A texture at the roots, linear between its pixels; beyond its edges it repeats.
+
+    read: gives the values of pixels by row and column, numbers or vectors
+    """
     if scalp.uv is None:
         raise UserError(f"{what} is '{name}', a picture, but {scalp.name} has no texture coordinates; unwrap it")
     picture = scalp.textures[name]
@@ -112,5 +125,6 @@ def _from_texture(name: str, curves: Curves, scalp: Mesh, what: str) -> NDArray[
     at = np.stack([(1.0 - uv[:, 1]) * rows, uv[:, 0] * columns], axis=1) - 0.5  # the first row is the upper one
     low = np.floor(at)
     (t, s), (i, j) = (at - low).T, np.mod(low, (rows, columns)).astype(np.int64).T
-    near = picture.at(np.stack([i, i, i + 1, i + 1]), np.stack([j, j + 1, j, j + 1]))
+    near = read(np.stack([i, i, i + 1, i + 1]), np.stack([j, j + 1, j, j + 1]))
+    t, s = (one.reshape(-1, *[1] * (near.ndim - 2)) for one in (t, s))
     return (1.0 - t) * ((1.0 - s) * near[0] + s * near[1]) + t * ((1.0 - s) * near[2] + s * near[3])

@@ -34,6 +34,20 @@ class Texture:
         """Rows and columns."""
         return self._picture.height, self._picture.width
 
+    @property
+    def colored(self) -> bool:
+        """Whether it has colors, as directions have."""
+        return self._picture.mode in ("RGB", "RGBA")
+
+    def directions_at(self, rows: NDArray[np.integer], columns: NDArray[np.integer]) -> NDArray[np.float64]:
+        """Directions of pixels of a colored picture, shape (…, 3): 128 of each channel is 0, 1 and 255 are -1 and 1.
+
+        Beyond its edges the picture repeats.
+        """
+        channels = self._picture.split()[:3]
+        one = [Texture(channel).at(rows, columns) for channel in channels]
+        return (255.0 * np.stack(one, axis=-1) - 128.0) / 127.0
+
     def at(self, rows: NDArray[np.integer], columns: NDArray[np.integer]) -> NDArray[np.float64]:
         """Values of pixels, of the shape of ``rows``; beyond its edges the picture repeats."""
         rows, columns = rows % self.shape[0], columns % self.shape[1]

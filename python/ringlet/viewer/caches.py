@@ -5,10 +5,9 @@ from __future__ import annotations
 from ringlet import io
 from ringlet.data.errors import UserError
 from ringlet.viewer.project import Project
+from ringlet.viewer.watcher import Stamp, stamp_of
 
 PATTERNS = ("*.usdc", "*.usda", "*.usd")
-
-Stamp = tuple[int, int, int]
 
 
 class Caches:
@@ -25,10 +24,10 @@ class Caches:
     def _is_cache(self, name: str) -> bool:
         try:
             path = self._project.inside(name, "compare")
-            status = path.stat()
-        except (UserError, OSError):  # a link out of the project, or a deleted file
+        except UserError:  # a link out of the project
             return False
-        stamp = status.st_ino, status.st_size, status.st_mtime_ns
+        if (stamp := stamp_of(path)) is None:
+            return False
         if self._inspected.get(name, (None, False))[0] != stamp:
             self._inspected[name] = stamp, io.is_cache(path)
         return self._inspected[name][1]

@@ -1,4 +1,4 @@
-"""The settings of a recipe as text, so that those of several recipes are compared line by line."""
+"""The settings of recipes and shots as text, so that those of several are compared line by line."""
 
 from __future__ import annotations
 
@@ -17,7 +17,12 @@ LONGEST = 1000  # characters of a value; of a longer one its size is shown
 
 def settings_text(recipe: Recipe) -> dict[str, str]:
     """Settings that a recipe and those that it extends set, by name, each as a whole value in TOML."""
-    data = tomllib.loads(recipe.text or "")
+    return settings_of_text(recipe.text or "")
+
+
+def settings_of_text(text: str) -> dict[str, str]:
+    """Settings of a recipe or shot by name, each as a whole value in TOML."""
+    data = tomllib.loads(text)
     return dict(_flat({key: value for key, value in data.items() if key not in OWN}, ""))
 
 
@@ -34,6 +39,12 @@ def _flat(table: dict[str, Any], place: str) -> Iterator[tuple[str, str]]:
                 )
         else:
             yield name, _whole(value)
+
+
+def changes(settings: dict[str, str], others: dict[str, str]) -> list[str]:
+    """The settings that differ from those of another file, each with its value; a dash where it is not set."""
+    names = dict.fromkeys([*settings, *others])
+    return [f"{name} = {settings.get(name, '–')}" for name in names if settings.get(name) != others.get(name)]
 
 
 def _whole(value: Any) -> str:

@@ -7,37 +7,57 @@ from numpy.typing import NDArray
 
 from ringlet.data.errors import UserError
 from ringlet.data.quantities import UNITS
+from ringlet.groom import Groom
+from ringlet.groom.operators.grown import DRAWN_TOLERANCE
+from ringlet.groom.scalp import Scalp
 from ringlet.viewer import protocol
 from ringlet.viewer.files import Files
 from ringlet.viewer.naming import new_name, value_at
 
+GUIDES = ["guides", "drawn"]  # the list of drawn guides
 DEVIATION = 5e-4  # [m] by which a curve may leave its stroke
 DIGITS = 5e-5  # [m] to which coordinates are rounded
 
 
-def draw(files: Files, message: protocol.Draw, origin: NDArray[np.floating]) -> None:
+def draw(files: Files, message: protocol.Draw, groom: Groom) -> None:
     """Makes a stroke the curve that a setting names, as one undo step; a setting without one gets a new curve.
 
-    origin: of the positions of messages [m]
+    groom: the displayed one
 
-    Raises UserError for a stroke without length, for a curve of a file, and for a recipe with several grooms.
+    Raises UserError for a stroke without length, for a curve of a file, for a guide with its root off the scalp, and
+    for a recipe with several grooms.
     """
     files.refuse_several()
     document = files.recipe
-    stroke = np.array(message.points, np.float64) + origin
+    stroke = np.array(message.points, np.float64) + groom.origin
     points = simplified(stroke[np.r_[True, np.linalg.norm(np.diff(stroke, axis=0), axis=1) > DEVIATION]])
     if len(points) < 2:
         raise UserError("draw: the stroke has no length; draw a line over the scalp")
     recipe = document.model
+    if message.place == GUIDES:
+        _check_root(points[0], groom)
     name = value_at(recipe, message.place)
     if isinstance(name, str) and name in recipe.curves and recipe.curves[name].points is None:
         raise UserError(f"draw: the curve '{name}' is that of a file; choose none for a new one")
+    names = name if isinstance(name, list) else None  # of a list of curves
     if not isinstance(name, str) or name not in recipe.curves:
         name = new_name(message.place, files.chosen_recipe, recipe.curves)
     unit = UNITS[recipe.unit]
     rounded = (np.round(points / DIGITS) * DIGITS / unit).tolist()
     curve = [[float(f"{x:.6g}") for x in point] for point in rounded]
-    files.set("recipe", [(["curves", name, "points"], curve), (message.place, name)], message.gesture)
+    files.set(
+        "recipe",
+        [(["curves", name, "points"], curve), (message.place, name if names is None else [*names, name])],
+        message.gesture,
+    )
+
+
+def _check_root(root: NDArray[np.float64], groom: Groom) -> None:
+    """Raises UserError for the root of a guide that is off the scalp."""
+    scalp = Scalp(groom.scalp, groom.region)
+    distance = float(np.linalg.norm(scalp.nearest(root[None])[0] - root))
+    if distance > DRAWN_TOLERANCE:
+        raise UserError(f"draw: the guide begins {1e3 * distance:.0f} mm off the scalp; begin it where the hair grows")
 
 
 def simplified(points: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from ringlet.data.errors import UserError
 from ringlet.viewer.scene import FrameState
+from ringlet.viewer.watcher import stamp_of
 
 
 class FrameSource(Protocol):
@@ -43,18 +44,11 @@ class WatchedFile:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self._opened_stamp = self._stamp()
+        self._opened_stamp = stamp_of(path)
 
     def unchanged(self) -> bool:
         """Whether the file was not replaced. A deleted file stays readable while it is open."""
-        return self._stamp() in (self._opened_stamp, None)
-
-    def _stamp(self) -> tuple[int, int, int] | None:
-        try:
-            status = self.path.stat()
-        except OSError:
-            return None
-        return status.st_ino, status.st_size, status.st_mtime_ns
+        return stamp_of(self.path) in (self._opened_stamp, None)
 
 
 class FileFrames:
@@ -94,18 +88,13 @@ class FileFrames:
 
 
 class FrameCache:
-    """Simulated frames, stored in an anonymous temporary file."""
+    """Frames of a run, stored in an anonymous temporary file."""
 
     def __init__(self) -> None:
         self._file = tempfile.TemporaryFile(prefix="ringlet-", buffering=0)  # noqa: SIM115
         self._places: dict[float, tuple[int, int]] = {}
         self._end = 0
         self._lock = threading.Lock()
-
-    @property
-    def frames(self) -> NDArray[np.float64]:
-        """Frame numbers, shape (k,)."""
-        return np.array(sorted(self._places), np.float64)
 
     def add(self, frame: float, message: bytes) -> None:
         """Appends a frame; raises UserError when the disk is full."""
@@ -122,18 +111,9 @@ class FrameCache:
             self._places[frame] = self._end, len(message)
             self._end += len(message)
 
-    def truncate(self, after: float | None = None) -> None:
-        """Removes all frames, or those after a frame."""
-        with self._lock:
-            self._places = {frame: at for frame, at in self._places.items() if after is not None and frame <= after}
-            self._end = max((start + size for start, size in self._places.values()), default=0)
-            self._file.truncate(self._end)
-
     def message(self, frame: float) -> bytes:
-        """Message of a frame; raises UserError when the frame does not exist."""
+        """Message of a frame that was added."""
         with self._lock:
-            if frame not in self._places:
-                raise UserError(f"frame {frame:g} is there no more; run the shot again")
             start, size = self._places[frame]
             self._file.seek(start)
             return self._file.read(size)

@@ -12,19 +12,19 @@ from ringlet.groom import Groom, row_of
 from ringlet.groom.edits import shape_frames
 from ringlet.groom.scalp import Scalp
 from ringlet.viewer import protocol
-from ringlet.viewer.display_groom import DisplayGroom
 from ringlet.viewer.files import Files
+from ringlet.viewer.viewport import Viewport
 
 
 class LockManipulator:
     """State of a gesture that drags a lock."""
 
-    def __init__(self, files: Files) -> None:
-        self._files = files
+    def __init__(self, files: Files, viewport: Viewport) -> None:
+        self._files, self._viewport = files, viewport
         self._grabbed: tuple[int, int, np.ndarray] | None = None
         self._moves: tuple[int, list[dict[str, Any]]] | None = None
 
-    def isolate(self, message: protocol.Isolate, display: DisplayGroom | None) -> None:
+    def isolate(self, message: protocol.Isolate) -> None:
         """Isolates locks from the procedural groom in their current position, or returns them.
 
         Raises UserError for a lock that does not exist or is edited in another file.
@@ -33,10 +33,9 @@ class LockManipulator:
         edits = document.contents().get("edit", [])
         edited = {edit.get("lock") for edit in edits}
         if message.out:
-            if display is None:
-                raise UserError("isolate: the groom is not made yet; wait until it is seen")
-            for lock in set(message.locks) - set(display.groom.locks.ids.tolist()):
-                row_of(display.groom, lock)  # raises UserError with the nearest id
+            groom = self._viewport.made("isolate").groom
+            for lock in set(message.locks) - set(groom.locks.ids.tolist()):
+                row_of(groom, lock)  # raises UserError with the nearest id
             new = [lock for lock in dict.fromkeys(message.locks) if lock not in edited]
             unmoved = [{"lock": lock, "move": [{"at": 1.0, "by": [0.0, 0.0, 0.0]}]} for lock in new]
             document.add_tables("edit", len(edits), unmoved)
@@ -49,12 +48,12 @@ class LockManipulator:
         returned = set(message.locks)
         document.remove_tables("edit", [k for k, edit in enumerate(edits) if edit.get("lock") in returned])
 
-    def drag(self, message: protocol.Drag, display: DisplayGroom | None) -> None:
+    def drag(self, message: protocol.Drag) -> None:
         """Moves a point of an isolated lock to a position, stored in the frame of the lock's shape.
 
         Raises UserError for a lock that is not isolated and for a point that does not exist.
         """
-        document = self._files.recipe
+        document, display = self._files.recipe, self._viewport.display
         edits = document.contents().get("edit", [])
         index = next((k for k, edit in enumerate(edits) if edit.get("lock") == message.lock), None)
         if display is None or index is None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ringlet.data.errors import UserError
 from ringlet.groom import Groom
@@ -68,7 +69,9 @@ class Painter:
         pace = 1.0 if not any(message.by) else min(1.0, 2.0 * ball.relative_step)
         for one in [ball, ball.mirrored(middle)] if message.mirrored else [ball]:
             weight = pace * one.falloff(stroke.texels.position)
-            stroke.values = stroke.texels.changed(stroke.values, weight, message.tool)
+            if message.tool == "comb" and not any(message.by):
+                continue  # a brush that rests has no direction
+            stroke.values = stroke.texels.changed(stroke.values, weight, _target(message.tool, one))
         if message.resting:
             self.finish()
         return self._message(message.place, stroke.values, groom)
@@ -108,16 +111,19 @@ class Painter:
         return value if isinstance(value, str) else ""
 
     def _values(self, place: Place) -> Values:
-        """Values of the map of a setting; a new one is black for a mask, which adds to nothing, and white otherwise."""
-        document, name = self._files.recipe, self._name(place)
+        """Values of the map of a setting. A new one is black for a mask, which adds to nothing, and white otherwise; a
+        new map of directions has none."""
+        document, name, directions = self._files.recipe, self._name(place), place[-1] == "direction"
         if not name:
-            return np.full((SIZE, SIZE), 0.0 if "mask" in place else 1.0, np.float32)
-        return values_of(document.map_picture(document.model.maps[name], self._files.project))
+            shape = (SIZE, SIZE, 3) if directions else (SIZE, SIZE)
+            return np.full(shape, 0.0 if directions or "mask" in place else 1.0, np.float32)
+        picture = document.map_picture(document.model.maps[name], self._files.project)
+        return values_of(picture, directions=directions)
 
     def _texels_of(self, groom: Groom, shape: tuple[int, ...]) -> Texels:
-        if self._texels is None or self._texels.mesh is not groom.scalp or self._texels.shape != shape:
+        if self._texels is None or self._texels.mesh is not groom.scalp or self._texels.shape != shape[:2]:
             mesh = groom.scalp
-            region = mesh.region(groom.region) if groom.region else np.arange(len(mesh.triangles))
+            region = mesh.region(groom.region)
             self._texels = Texels(mesh, region, (shape[0], shape[1]))
         return self._texels
 
@@ -125,22 +131,32 @@ class Painter:
     def _middle(groom: Groom) -> float:
         """Position of the plane of symmetry [m]."""
         mesh = groom.scalp
-        region = mesh.region(groom.region) if groom.region else np.arange(len(mesh.triangles))
+        region = mesh.region(groom.region)
         x = mesh.points[np.unique(mesh.triangles[region]), 0]
         return 0.5 * float(x.min() + x.max())
 
     def _message(self, place: Place, values: Values, groom: Groom) -> bytes:
         mesh = groom.scalp
-        region = mesh.region(groom.region) if groom.region else np.arange(len(mesh.triangles))
+        region = mesh.region(groom.region)
         assert mesh.uv is not None
         kept, corners = np.unique(mesh.triangles[region], return_inverse=True)
         uv = np.zeros((len(kept), 2))
         uv[corners.ravel()] = mesh.uv[region].reshape(-1, 2)
         rows = np.clip((1.0 - uv[:, 1]) * values.shape[0], 0, values.shape[0] - 1).astype(int)
         columns = np.clip(uv[:, 0] * values.shape[1], 0, values.shape[1] - 1).astype(int)
+        shown = values[rows, columns]
+        lengths = np.linalg.norm(shown, axis=1) if shown.ndim == 2 else shown
         return pack(
             protocol.Painted(map=self._name(place)),
             points=mesh.points[kept] - groom.origin,
             triangles=corners.reshape(-1, 3),
-            values=np.rint(255.0 * values[rows, columns]),
+            values=np.rint(255.0 * np.clip(lengths, 0.0, 1.0)),
+            directions=shown if shown.ndim == 2 else np.empty(0),
         )
+
+
+def _target(tool: str, ball: Ball) -> NDArray[np.float64] | float | None:
+    """Value to which a brush goes: the direction in which it combs; None for the mean around."""
+    if tool == "comb":
+        return ball.by / np.linalg.norm(ball.by)
+    return {"add": 1.0, "remove": 0.0}.get(tool)

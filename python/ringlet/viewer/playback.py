@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from functools import partial
+from itertools import count
 from pathlib import Path
 
 import numpy as np
@@ -15,12 +16,15 @@ from ringlet.data.digest import digest
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Clip
 from ringlet.viewer import protocol
+from ringlet.viewer.compared_settings import changes, settings_of_text
 from ringlet.viewer.display_groom import DisplayGroom
 from ringlet.viewer.files import Files
-from ringlet.viewer.frame_cache import FileFrames, FrameCache, FrameSource, ReplacedError, WatchedFile
+from ringlet.viewer.frame_cache import FileFrames, FrameSource, ReplacedError, WatchedFile
 from ringlet.viewer.publisher import Publisher
+from ringlet.viewer.runs import Take, TakeBeside
 from ringlet.viewer.scene import FrameState, ReadFrame, open_frames
-from ringlet.viewer.simulation import Simulation, Stage
+from ringlet.viewer.simulation import Simulation
+from ringlet.viewer.stage import Stage
 from ringlet.viewer.viewport import Viewport
 from ringlet.viewer.wire import pack, trouble
 
@@ -51,15 +55,18 @@ class Playback:
         self._shown, self._beside = OpenFrames(), OpenFrames()
         self._stage: Stage | None = None
         self._against = ""
+        self._compared: protocol.Compared | None = None
         self._replaced = 0
         self._span: tuple[float, float] | None = None
-        self._kept: dict[str, tuple[FrameCache, Simulation]] = {}  # by the digest of the groom, the last one at the end
-        self._simulated, self._simulation = self._new_simulation()
+        self._numbers = count(1)
+        self._kept: dict[
+            str, tuple[DisplayGroom, Simulation]
+        ] = {}  # by the digest of the groom, the last one at the end
+        self._simulation = self._new_simulation()
 
-    def _new_simulation(self) -> tuple[FrameCache, Simulation]:
-        frames = FrameCache()
+    def _new_simulation(self) -> Simulation:
         changed, failed = partial(self._call, self.publish_timeline), partial(self._call, self._failed)
-        return frames, Simulation(frames, changed, failed)
+        return Simulation(lambda: next(self._numbers), changed, failed)
 
     def stop(self) -> None:
         """Stops the simulation and closes the open files."""
@@ -70,19 +77,24 @@ class Playback:
     def frame_sources(self, message: protocol.Watch) -> dict[str, Callable[[], bytes | None]]:
         """Functions that make the messages of the requested frames that exist, by subject."""
         messages: dict[str, Callable[[], bytes | None]] = {}
-        for layer, source, frames in (
-            ("shot", self._shot, message.shot),
-            ("against", self._beside.source, message.against),
-        ):
-            if source is not None:
-                existing = set(source.frames.tolist())
-                messages |= {
-                    f"{layer}/{frame:g}": partial(self._frame, source, frame) for frame in frames if frame in existing
-                }
+        for layer, frames in (("shot", message.shot), ("against", message.against)):
+            messages |= {
+                f"{layer}/{frame:g}": partial(self._frame, layer, frame)
+                for frame in frames
+                if self._source_of(layer, frame) is not None
+            }
         return messages
 
-    def _frame(self, source: FrameSource, frame: float) -> bytes | None:
-        """Message of a frame, or an error message; None for a frame of a replaced file."""
+    def _source_of(self, layer: str, frame: float) -> FrameSource | None:
+        """What has a frame now; None where it does not exist."""
+        source = self._shot if layer == "shot" else self._beside.source
+        return source if source is not None and (source.frames == frame).any() else None
+
+    def _frame(self, layer: str, frame: float) -> bytes | None:
+        """Message of a frame, or an error message; None for one that has gone, or of a replaced file."""
+        source = self._source_of(layer, frame)
+        if source is None:
+            return None
         try:
             return source.message(frame)
         except ReplacedError:
@@ -102,12 +114,12 @@ class Playback:
             except UserError as error:
                 self._failed(str(error))
                 if opened is self._beside:
-                    self.set_comparison("")
+                    self.set_comparison(protocol.Against())
             self.publish_timeline()
 
     @property
     def _shot(self) -> FrameSource | None:
-        return self._simulated if self._files.mode == "shot" else self._shown.source
+        return self._simulation.take if self._files.mode == "shot" else self._shown.source
 
     def play(self, message: protocol.Play) -> None:
         """Starts, pauses, resumes or restarts the simulation of the shot.
@@ -126,14 +138,15 @@ class Playback:
             self._viewport.show_bodies(shot, self._stage.groom)
             self._stage.bodies = self._viewport.bodies
             self._stage.clip = api.scalp_clip(self._stage.groom, shot.frames)
-            self._simulation.start(shot, self._stage, restart_frame)
+            self._simulation.start(shot, self._files.document("shot").text, self._stage, restart_frame)
 
     def set_groom(self, display: DisplayGroom) -> None:
         """Sets the groom of the shot. Another groom has other frames; those of the last grooms come back with them."""
         if self._stage is None or self._stage.groom.locks.points is not display.groom.locks.points:
-            self._switch_simulation(digest(display.groom.locks.points, display.groom.locks.ids))
-            self._beside.close()
-            self._against = ""
+            self._switch_simulation(display)
+            if not isinstance(self._beside.source, TakeBeside):
+                self._beside.close()
+                self._against = ""
             try:
                 self._viewport.show_bodies(self._files.shot, display.groom)
             except UserError as error:  # starting the shot raises it again
@@ -142,15 +155,15 @@ class Playback:
             self._stage = Stage(display.groom, display.hairs, clip, self._viewport.bodies)
         self.publish_timeline()
 
-    def _switch_simulation(self, groom: str) -> None:
+    def _switch_simulation(self, display: DisplayGroom) -> None:
         """Shows the frames that were simulated of a groom, or none yet."""
+        groom = digest(display.groom.locks.points, display.groom.locks.ids)
         if groom in self._kept and self._kept[groom][1] is self._simulation:
             return
         self._simulation.set_aside()
         self._replaced += KEYS_PER_GROOM
-        frames = self._kept.pop(groom, None) or self._new_simulation()
-        self._kept[groom] = frames
-        self._simulated, self._simulation = frames
+        _, self._simulation = self._kept.pop(groom, None) or (display, self._new_simulation())
+        self._kept[groom] = display, self._simulation
         while len(self._kept) > MAX_GROOMS:
             del self._kept[next(iter(self._kept))]
 
@@ -165,23 +178,51 @@ class Playback:
             return
         self.publish_timeline()
 
-    def set_comparison(self, name: str) -> None:
-        """Shows the frames of a cache beside the shot; an empty name removes them.
+    def set_comparison(self, message: protocol.Against) -> None:
+        """Shows the frames of a cache, or of an earlier take, next to those of the shot, or no more.
 
-        Raises UserError before the groom is made, and for a file that is no cache of that groom.
+        Raises UserError before the groom is made, for a file that is no cache of that groom, and for no kept take.
         """
         self._beside.close()
         self._viewport.clear_beside()
-        self._against = ""
-        if name:
+        self._against, settings = "", {}
+        if message.run:
+            take, display = self._take(message.run)
+            self._beside.source = TakeBeside(take)
+            self._against, settings = f"run {message.run}", settings_of_text(take.last.text)
+            self._viewport.show(display, "b")
+        elif message.name:
             stage, display = self._stage, self._viewport.display
             if stage is None or display is None:
                 raise UserError("shot: its groom is not made yet; wait until it is seen")
-            self._beside.open(self._files.project.inside(name, "against"), display, partial(stage.frame, "against"))
-            self._against = name
+            file = self._files.project.inside(message.name, "against")
+            self._beside.open(file, display, partial(stage.frame, "against"))
+            self._against = message.name
             self._viewport.show(display, "b")
-        self._publisher.publish("b/none", pack(protocol.Compared(side="b", name=name)))
+        compared = protocol.Compared(side="b", name=self._against, settings=settings)
+        self._publisher.publish("b/none", pack(compared))
         self.publish_timeline()
+
+    def text_of_run(self, number: int) -> str:
+        """Text of the shot of an earlier take; raises UserError for one that is not kept."""
+        return self._take(number)[0].last.text
+
+    def _take(self, number: int) -> tuple[Take, DisplayGroom]:
+        for take, display in self._takes():
+            if take.last.number == number:
+                return take, display
+        raise UserError(f"shot: run {number} is not kept; choose one that the timeline lists")
+
+    def _takes(self) -> Iterator[tuple[Take, DisplayGroom]]:
+        """Earlier takes with other settings or of other grooms, that can be shown next to the timeline."""
+        if self._stage is None:
+            return
+        for display, simulation in self._kept.values():
+            if np.array_equal(display.groom.origin, self._stage.groom.origin):
+                current = simulation is self._simulation or not simulation.take.made
+                yield from ((take, display) for take in simulation.takes.values())
+                if not current:
+                    yield simulation.take, display
 
     def publish_timeline(self) -> None:
         """Publishes the list of frames and the state of the simulation."""
@@ -205,11 +246,51 @@ class Playback:
                 "preroll": preroll,
                 "key": simulation.key + self._replaced,
                 "against": self._against,
+                "kept": self._kept_runs() if runs else [],
             }
         )
-        frames, beside = (source.frames if source else np.empty(0) for source in (self._shot, self._beside.source))
-        made, stale = simulation.origins(self._files.shot) if runs else (np.zeros(len(frames)), np.zeros(len(frames)))
-        self._publisher.publish("timeline", pack(timeline, frames=frames, beside=beside, runs=made, stale=stale))
+        take = simulation.take if runs else Take({})
+        frames = take.frames if runs or self._shown.source is None else self._shown.source.frames
+        beside = self._beside.source
+        swings = beside.take.swings if isinstance(beside, TakeBeside) else np.empty((0, 3))
+        self._publisher.publish(
+            "timeline",
+            pack(
+                timeline,
+                frames=frames,
+                beside=beside.frames if beside else np.empty(0),
+                runs=take.runs if runs else np.zeros(len(frames)),
+                stale=take.stale(self._files.shot) if runs else np.zeros(len(frames)),
+                swings=take.swings,
+                beside_swings=swings,
+            ),
+        )
+        if runs:
+            now = protocol.Compared(side="a", name="now", settings=settings_of_text(self._files.document("shot").text))
+            self._publish_settings(now)
+
+    def _publish_settings(self, now: protocol.Compared) -> None:
+        """Publishes the settings of the shot while an earlier take is compared with it."""
+        if isinstance(self._beside.source, TakeBeside) and now != self._compared:
+            self._publisher.publish("a/none", pack(now))
+            self._compared = now
+
+    def _kept_runs(self) -> list[protocol.KeptRun]:
+        """Earlier takes, the oldest first."""
+        text, found = self._files.document("shot").text, []
+        for take, _ in self._takes():
+            run = take.last
+            found.append(
+                protocol.KeptRun(
+                    number=run.number,
+                    first=take.frames[0],
+                    last=take.frames[-1],
+                    contact=run.shot.touching is not None,
+                    same_groom=take in self._simulation.takes.values(),
+                    changes=changes(settings_of_text(run.text), settings_of_text(text)),
+                )
+            )
+        return sorted(found, key=lambda one: one.number)
 
 
 class OpenFrames:

@@ -16,7 +16,8 @@ from starlette.middleware.base import RequestResponseEndpoint
 
 from ringlet.data.errors import UserError
 from ringlet.viewer import protocol
-from ringlet.viewer.session import Page, Session
+from ringlet.viewer.pages import Page
+from ringlet.viewer.session import Session
 from ringlet.viewer.wire import trouble, unpack
 
 STATIC = Path(__file__).with_name("static")

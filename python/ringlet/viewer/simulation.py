@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import threading
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -13,121 +12,32 @@ from numpy.typing import NDArray
 
 from ringlet import api
 from ringlet.data.errors import UserError
-from ringlet.data.mesh import Clip
 from ringlet.data.precision import compact
-from ringlet.groom import AnyHairs, Groom
 from ringlet.shot import Shot
 from ringlet.sim.motion import Motion
-from ringlet.viewer import overlays, protocol
-from ringlet.viewer.display_groom import spread_order
-from ringlet.viewer.frame_cache import FrameCache
-from ringlet.viewer.scene import FrameState, VisibleMesh
-from ringlet.viewer.wire import pack
+from ringlet.viewer.runs import Run, Swing, Take, inputs
+from ringlet.viewer.scene import FrameState
+from ringlet.viewer.stage import Stage
 from ringlet.viewer.worker import report_mistake
 
 MAX_CHECKPOINT_BYTES = 1_500_000_000  # memory for the checkpoints of frames
-
-
-@dataclass
-class Stage:
-    """The scene of a simulation: groom, hairs, animated scalp and bodies."""
-
-    groom: Groom
-    hairs: AnyHairs | None
-    clip: Clip
-    bodies: list[VisibleMesh]
-    _lock: threading.Lock = field(default_factory=threading.Lock, init=False)  # guards the buffer of hairs
-
-    @cached_property
-    def _buffer(self) -> NDArray[np.float32] | None:
-        return self.hairs.new_buffer() if self.hairs is not None else None
-
-    @cached_property
-    def turning(self) -> NDArray[np.float64]:
-        """Turning of the groomed locks [rad], shape (n,)."""
-        return overlays.turning(self.groom.locks, self.groom.locks.points)
-
-    def frame(
-        self,
-        layer: str,
-        frame: float,
-        state: FrameState,
-        motion: Motion | None = None,
-    ) -> bytes:
-        """Message of a frame; contact and depth need ``motion``."""
-        points, statistics, _ = state
-        axis, root, left = np.empty(0), np.empty(0), np.empty((0, 0), np.uint8)
-        corners, locks = self.clip.at(frame), self.groom.locks
-        bodies = [body.at(frame, state) for body in self.bodies]
-        if self.hairs is not None:
-            deformation = self.hairs.deformation(corners)
-            order = spread_order(deformation["first"])
-            axis, root = deformation["axis"], deformation["root"][order]
-            beside = [(at, body.mesh.triangles) for at, body in zip(bodies, self.bodies, strict=True)]
-            with self._lock:
-                left = self.hairs.offset_fractions(points, deformation, beside, buffer=self._buffer)[order]
-        drawn = np.flatnonzero((left < 255).any(axis=1))
-        shown, contact, depth = shown_statistics(statistics), np.empty(0), np.empty(0)
-        if motion is not None:
-            contact = overlays.contact(motion)
-            depth = np.concatenate(list(overlays.depths(self.groom.scalp, corners, locks, points)))
-            shown["inside"] = int(np.count_nonzero(depth))
-        return pack(
-            protocol.Frame.model_validate({"layer": layer, "frame": frame, "statistics": shown}),
-            points=points - self.groom.origin,
-            axis=axis,
-            root=root,
-            drawn=drawn,
-            left=left[drawn],
-            bodies=np.concatenate([np.empty((0, 3)), *bodies]) - self.groom.origin,
-            stretch=overlays.stretch(locks, points),
-            contact=contact,
-            depth=overlays.as_bytes(depth / overlays.DEPTH_SHOWN),
-            curl=overlays.curl_loss(locks, self.turning, points),
-        )
-
-
-def shown_statistics(statistics: dict[str, Any]) -> dict[str, Any]:
-    """Statistics of a frame that the page displays."""
-    contact = statistics.get("contact", {})
-    return {
-        "wall_ms": statistics.get("wall_ms"),
-        "max_stretch": statistics.get("max_stretch"),
-        "newton": statistics.get("newton"),
-        "nan": statistics.get("nan", 0),
-        "contacts": contact.get("contacts"),
-        "inside": None,
-    }
-
-
-@dataclass(frozen=True)
-class Run:
-    """One run of a shot.
-
-    restart_frame: frame of the checkpoint that it starts from; None for the start of the shot
-    checkpoint:    state of the motion there
-    number:        number of the run, from 1
-    stopping:      set to end it
-    """
-
-    shot: Shot
-    stage: Stage
-    restart_frame: int | None
-    checkpoint: dict[str, NDArray[Any]] | None
-    number: int
-    stopping: threading.Event
+MAX_TAKES = 8  # earlier takes of a groom that are kept
 
 
 class Simulation:
-    """A simulation thread.
+    """A simulation thread, and the takes that it made of one groom.
 
-    frames:  stores the frames
+    number:  gives the number of the next run
     changed: called after a change of the state
     failed:  called with an error message, or with a warning of long work
+    take:    the frames of the timeline
+    takes:   earlier takes with other settings, by the number of their last run
     """
 
-    def __init__(self, frames: FrameCache, changed: Callable[[], None], failed: Callable[[str], None]) -> None:
-        self._frames, self._changed, self._failed = frames, changed, failed
+    def __init__(self, number: Callable[[], int], changed: Callable[[], None], failed: Callable[[str], None]) -> None:
+        self._number, self._changed, self._failed = number, changed, failed
+        self.take = Take({})
+        self.takes: dict[int, Take] = {}
         self.state = "still"
         self.rolled = 0
         self.key = 0
@@ -136,12 +46,12 @@ class Simulation:
         self._thread: threading.Thread | None = None
         self._results = threading.Lock()  # guards frames and checkpoints: a run that is stopped adds no more
         self._checkpoints: dict[int, dict[str, NDArray[Any]]] = {}
-        self._runs: list[Shot] = []  # shot of each run
-        self._run_of: dict[float, int] = {}  # number of the run of each frame
 
-    def start(self, shot: Shot, stage: Stage, restart_frame: int | None = None) -> None:
-        """Simulates a shot with its current settings, from the start or from a checkpoint.
+    def start(self, shot: Shot, text: str, stage: Stage, restart_frame: int | None = None) -> None:
+        """Simulates a shot with its current settings, from the start or from a checkpoint. Frames that other settings
+        made are kept as an earlier take.
 
+        text:          text of the shot
         restart_frame: restarts from the last checkpoint up to this frame
 
         Raises UserError when there is no such checkpoint.
@@ -158,15 +68,23 @@ class Simulation:
             self._checkpoints = {frame: kept for frame, kept in self._checkpoints.items() if frame <= restart_frame}
         else:
             self._checkpoints = {}
-        self._frames.truncate(restart_frame)
+        before, self.take = self.take, self.take.up_to(restart_frame)
+        if len(self.take.made) < len(before.made):
+            self._keep(before, shot)
         self.rolled, self.key, self.state = 0, self.key + 1, "rolling"
         self._stopping = threading.Event()
         self._running.set()
-        self._runs.append(shot)
-        run = Run(shot, stage, restart_frame, checkpoint, len(self._runs), self._stopping)
+        run = Run(self._number(), shot, text, stage, restart_frame, checkpoint, self._stopping)
         self._thread = threading.Thread(target=self._run, args=(run, previous), daemon=True)
         self._thread.start()
         self._changed()
+
+    def _keep(self, take: Take, shot: Shot) -> None:
+        """Keeps an earlier take, unless a run of this shot makes the same frames again."""
+        if inputs(take.last.shot) != inputs(shot):
+            self.takes.setdefault(take.last.number, take)
+            while len(self.takes) > MAX_TAKES:
+                del self.takes[min(self.takes)]
 
     def pause(self) -> None:
         """Pauses after the current frame."""
@@ -201,12 +119,6 @@ class Simulation:
         if self.state != "done":
             self.state = "still"
 
-    def origins(self, shot: Shot) -> tuple[NDArray[np.int32], NDArray[np.bool_]]:
-        """Number of the run that made each frame, and whether it ran with other settings than those of a shot."""
-        runs = np.array([self._run_of.get(frame, 0) for frame in self._frames.frames.tolist()], np.int32)
-        other = np.array([False, *(_inputs(run) != _inputs(shot) for run in self._runs)])
-        return runs, other[runs]
-
     def _run(self, run: Run, previous: threading.Thread | None) -> None:
         """Simulates once the thread of the previous run has ended."""
         if previous is not None:
@@ -230,6 +142,7 @@ class Simulation:
         motion = api.start_motion(shot, stage.groom, on_warning=self._failed)
         if run.checkpoint is not None:
             motion.recall(run.checkpoint)
+        before = None if run.restart_frame is None else np.array(motion.points(run.restart_frame))
         begin = 0 if run.restart_frame is None else shot.preroll + run.restart_frame - first + 1
         for step in range(begin, shot.preroll + last - first + 1):
             self._running.wait()
@@ -238,7 +151,8 @@ class Simulation:
             k = step - shot.preroll
             statistics = motion.reach(k)
             cloths = {garment.name: garment.cloth.positions for garment in motion.garments}
-            state = FrameState(compact(motion.points(first + max(k, 0))), statistics, cloths)
+            points = np.array(motion.points(first + max(k, 0)))  # the motion goes on in place
+            state = FrameState(compact(points), statistics, cloths)
             message = stage.frame("shot", first + k, state, motion) if k >= 0 else b""
             with self._results:
                 if stopping.is_set():
@@ -249,8 +163,9 @@ class Simulation:
                     self._store_checkpoint(first + k, motion)
                     if self.state == "rolling":
                         self.state = "running"
-                    self._frames.add(first + k, message)
-                    self._run_of[float(first + k)] = run.number
+                    run.add(first + k, message, _swing(stage, before, points, statistics))
+                    self.take = self.take.with_frame(first + k, run)
+                    before = points
             self._changed()
         self.state = "done"
 
@@ -263,6 +178,10 @@ class Simulation:
             del self._checkpoints[min(self._checkpoints)]
 
 
-def _inputs(shot: Shot) -> dict[str, Any]:
-    """Settings of a shot that its frames depend on."""
-    return shot.model_dump(exclude={"frames"})
+def _swing(
+    stage: Stage, before: NDArray[np.float64] | None, now: NDArray[np.float64], statistics: dict[str, Any]
+) -> Swing:
+    """How the hair moved to a frame from the one before, if there is one."""
+    tips, roots = (math.nan, math.nan) if before is None else stage.speeds(before, now)
+    kept = statistics.get("contact", {}).get("motion_kept")
+    return Swing(tips, roots, math.nan if kept is None else kept)

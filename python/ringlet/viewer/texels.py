@@ -36,23 +36,27 @@ class Texels:
         self.position: NDArray[np.float64] = position[rows, columns][self.covered]
         self._rows, self._columns = rows[self.covered], columns[self.covered]
 
-    def changed(self, values: NDArray[np.floating], weight: NDArray[np.floating], tool: str) -> NDArray[np.float32]:
+    def changed(
+        self, values: NDArray[np.floating], weight: NDArray[np.floating], to: NDArray[np.floating] | float | None
+    ) -> NDArray[np.float32]:
         """Values with a stroke of a brush.
 
-        values: shape (rows, columns)
+        values: shape (rows, columns), or (rows, columns, 3) for directions
         weight: fraction of the way of each covered texel, shape (count,)
+        to:     value to which the brush goes; None for the mean around each texel
         """
-        target = {"add": 1.0, "remove": 0.0}.get(tool)
-        to = self._mean(values)[self._rows, self._columns] if target is None else target
+        target = self._mean(values)[self._rows, self._columns] if to is None else to
         changed = values.astype(np.float32)
         before = changed[self.covered]
-        changed[self.covered] = before + weight * (to - before)
+        changed[self.covered] = before + weight.reshape(-1, *[1] * (before.ndim - 1)) * (target - before)
         return changed
 
     def _mean(self, values: NDArray[np.floating]) -> NDArray[np.float64]:
-        """Mean of the values on the region around each texel, shape (rows, columns)."""
-        share = uniform_filter(self._inside.astype(np.float64), BLUR)
-        return uniform_filter(np.where(self._inside, values, 0.0), BLUR) / np.maximum(share, 1e-6)
+        """Mean of the values on the region around each texel, of the shape of ``values``."""
+        if values.ndim == 3:
+            return np.stack([self._mean(channel) for channel in np.moveaxis(values, -1, 0)], axis=-1)
+        share = np.maximum(uniform_filter(self._inside.astype(np.float64), BLUR), 1e-6)
+        return uniform_filter(np.where(self._inside, values, 0.0), BLUR) / share
 
 
 def _rasterized(

@@ -7,6 +7,7 @@ from collections.abc import Collection
 import numpy as np
 
 from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
 from ringlet.groom import Groom
 from ringlet.shot import Shot
@@ -39,6 +40,12 @@ class Viewport:
     def bodies(self) -> list[VisibleMesh]:
         """Visible meshes with their animation, those that the hair wears last."""
         return self._scene + self._worn
+
+    def made(self, what: str) -> DisplayGroom:
+        """The displayed groom; raises UserError before it is made, in the name of what needs it."""
+        if self.display is None:
+            raise UserError(f"{what}: the groom is not made yet; wait until it is seen")
+        return self.display
 
     @property
     def origin(self) -> np.ndarray:
@@ -111,8 +118,8 @@ class Viewport:
         scalp = groom.scalp
         names = protocol.Names(
             regions=sorted(scalp.regions),
-            maps=sorted({*scalp.maps, *scalp.textures}),
-            vectors=sorted(scalp.vectors),
+            maps=sorted({*scalp.maps, *(name for name, one in scalp.textures.items() if not one.colored)}),
+            vectors=sorted({*scalp.vectors, *(name for name, one in scalp.textures.items() if one.colored)}),
             curves=sorted(curves),
         )
         if names != self._names:

@@ -26,7 +26,7 @@ class FileWatcher:
         return {file for file in files if self._has_changed(file)}
 
     def _has_changed(self, file: Path) -> bool:
-        stamp = _stamp(file)
+        stamp = stamp_of(file)
         before, self._stamps[file] = self._stamps.get(file), stamp or self._stamps.get(file, (0, 0, 0))
         first = file not in self._digests
         if stamp is None or stamp == self._settled.get(file) or (stamp != before and not first):
@@ -35,14 +35,15 @@ class FileWatcher:
             digest = hashlib.blake2b(file.read_bytes()).digest()
         except OSError:
             return False
-        if _stamp(file) != stamp:
+        if stamp_of(file) != stamp:
             return False
         changed = not first and self._digests[file] != digest
         self._digests[file], self._settled[file] = digest, stamp
         return changed
 
 
-def _stamp(file: Path) -> Stamp | None:
+def stamp_of(file: Path) -> Stamp | None:
+    """What changes when a file is written or replaced; None for a missing one."""
     try:
         status = file.stat()
     except OSError:

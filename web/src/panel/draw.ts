@@ -1,14 +1,19 @@
-// Drawing on the scalp: a stroke becomes the helper curve that a setting names, such as a part line.
+// Drawing on the scalp: a stroke becomes the helper curve that a setting names, such as a part line. A guide begins on the
+// scalp and may leave it: off the skin it is drawn in the plane of the picture through its root.
 
 import { BufferGeometry, Line, LineBasicMaterial, MOUSE, Vector3 } from "three";
 import { h } from "../dom";
 import type { Model, Place } from "../model";
+import { inPlane } from "../view/pick";
 import { onSurface } from "../view/surface";
 import type { Viewer } from "../view/viewer";
 import { bindKey } from "./keys";
 import { Slider } from "./slider";
 
 const SKIN = 0.0008; // distance of a line from the skin, so that it is seen [m]
+const ABOVE = 0.003; // distance of a guide from the skin over which it is drawn [m]
+const ON_SKIN = "Draw a line over the scalp. A new line replaces it.";
+const FREE = "Draw from the root to the tip: begin on the scalp, and leave it where the hair stands up. Each line is one more guide.";
 
 export class DrawTool {
   readonly element = h("section", { class: "panel brush draw", hidden: true, "aria-label": "Draw on the scalp" });
@@ -19,6 +24,8 @@ export class DrawTool {
   private readonly height = h("output", { class: "unit", for: "draw-lift" });
   private readonly hair = h("input", { type: "checkbox", role: "switch", class: "switch", id: "draw-hair" });
   private readonly line = new Line(new BufferGeometry(), new LineBasicMaterial({ color: 0xff9e4d, depthTest: false }));
+  private readonly words = h("p", { class: "told" });
+  private readonly lifts: HTMLElement;
   private place: Place = [];
   private stroke: Vector3[] = [];
 
@@ -31,10 +38,11 @@ export class DrawTool {
     viewer.painted.scene.add(this.line);
     const row = (label: string, input: HTMLElement, more?: HTMLElement) =>
       h("div", { class: "field-head" }, h("label", { for: input.id }, label), input, more);
+    this.lifts = row("end lift", this.lift.element, this.height);
     this.element.append(
       this.title,
-      h("p", { class: "told" }, "Draw a line over the scalp. A new line replaces it; the right button, Alt or the arrow keys orbit the camera."),
-      row("end lift", this.lift.element, this.height),
+      this.words,
+      this.lifts,
       row("show the hair", this.hair),
       h("div", { class: "group" }, h("button", { type: "button", class: "quiet", onclick: () => this.show(false) }, "Done")),
     );
@@ -53,7 +61,14 @@ export class DrawTool {
   draw(place: Place, label: string): void {
     this.place = place;
     this.title.textContent = `Draw ${label}`;
+    this.words.textContent = `${this.leaves ? FREE : ON_SKIN} The right button, Alt or the arrow keys orbit the camera.`;
+    this.lifts.hidden = this.leaves;
     this.show(true);
+  }
+
+  /** Whether the line may leave the head, as a guide does. */
+  private get leaves(): boolean {
+    return this.place.at(-1) === "drawn";
   }
 
   show(on: boolean): void {
@@ -89,13 +104,21 @@ export class DrawTool {
 
   private add(event: PointerEvent): void {
     const { viewer } = this;
-    const at = onSurface(viewer.surfaces, viewer.camera, viewer.size, viewer.at(event));
+    const skin = onSurface(viewer.surfaces, viewer.camera, viewer.size, viewer.at(event));
+    const at = this.leaves && this.stroke.length ? this.before(skin, inPlane(viewer.at(event), this.stroke[0], viewer.camera, viewer.size)) : skin;
     if (!at) return;
     this.stroke.push(at);
     this.line.geometry.dispose();
-    this.line.geometry = new BufferGeometry().setFromPoints(this.lifted(Math.max(SKIN, this.lift.value / 1000)));
+    this.line.geometry = new BufferGeometry().setFromPoints(this.lifted(this.leaves ? 0 : Math.max(SKIN, this.lift.value / 1000)));
     this.line.visible = this.stroke.length > 1;
     viewer.invalidate();
+  }
+
+  /** Of a place on the skin, if there is one, and one in the plane the nearer to the eye; above the skin. */
+  private before(skin: Vector3 | null, plane: Vector3): Vector3 {
+    const eye = this.viewer.camera.position;
+    if (!skin || plane.distanceTo(eye) < skin.distanceTo(eye)) return plane;
+    return skin.clone().addScaledVector(skin.clone().sub(this.viewer.middle).normalize(), ABOVE);
   }
 
   /** The stroke, whose end is lifted off the head. */
@@ -107,7 +130,7 @@ export class DrawTool {
 
   private release(): void {
     if (!this.stroke.length) return;
-    const points = this.lifted(this.lift.value / 1000).map(({ x, y, z }): [number, number, number] => [x, y, z]);
+    const points = this.lifted(this.leaves ? 0 : this.lift.value / 1000).map(({ x, y, z }): [number, number, number] => [x, y, z]);
     this.stroke = [];
     this.line.visible = false;
     if (points.length > 1) this.model.say({ kind: "draw", place: this.place, points, gesture: this.model.newGesture() });

@@ -119,17 +119,23 @@ export class LockTool {
     this.model.tell("chosen");
   }
 
-  /** What was given to this lock alone, each with a way to take it out. */
+  /** What was given to the chosen locks alone, each with a way to take it out of all of them. */
   private tellOwn(): void {
     const said = this.model.documents.recipe?.said ?? {};
-    const found = this.row < 0 ? [] : [...ownValues(said, String(this.id))];
-    this.own.toggleAttribute("hidden", !found.length);
+    const found = new Map<string, [Place, Json][]>(); // by the setting
+    for (const id of this.ids)
+      for (const own of ownValues(said, String(id))) {
+        const setting = named(said, own[0].slice(0, -2));
+        found.set(setting, [...(found.get(setting) ?? []), own]);
+      }
+    this.own.toggleAttribute("hidden", !found.size);
     this.own.replaceChildren(
-      ...found.map(([place, value]) => {
-        const name = named(said, place.slice(0, -2));
-        const take = () =>
-          this.model.say({ kind: "set", changes: [[place, null]], gesture: this.model.newGesture(), resting: true });
-        return h("li", {}, h("span", {}, `${name} ${String(value)}`), iconButton("bin", `Not its own ${name}`, take));
+      ...[...found].map(([setting, values]) => {
+        const changes = values.map(([place]): [Place, Json] => [place, null]);
+        const take = () => this.model.say({ kind: "set", changes, gesture: this.model.newGesture(), resting: true });
+        const some = values.length < this.rows.length ? `, of ${values.length} of ${this.rows.length}` : "";
+        const different = [...new Set(values.map(([, value]) => String(value)))].join(", ");
+        return h("li", {}, h("span", {}, `${setting} ${different}${some}`), iconButton("bin", `Not its own ${setting}`, take));
       }),
     );
   }

@@ -2,7 +2,7 @@
 
 import type { File, Model, Place } from "../model";
 import type { Field } from "./field";
-import { NameField, RegionsField } from "./name_fields";
+import { DrawnField, NameField, RegionsField } from "./name_fields";
 import { NumberField } from "./number_field";
 import { ChoiceField, ColorField, OtherField, TextField, ToggleField } from "./plain_fields";
 import { RampField } from "./ramp_field";
@@ -20,6 +20,7 @@ export function makeField(model: Model, file: File, place: Place, setting: Setti
     text: TextField,
     color: ColorField,
     name: NameField,
+    drawn: DrawnField,
     regions: RegionsField,
     vector: VectorField,
     table: TableField,

@@ -20,7 +20,7 @@ export class NameField extends Field {
       maps: () => iconButton("brush", `Paint ${label} on the scalp`, () => model.paint(place, label)),
       curves: () => iconButton("pen", `Draw ${label} on the scalp`, () => model.draw(place, label)),
       regions: () => null,
-      vectors: () => null,
+      vectors: () => iconButton("brush", `Comb ${label} on the scalp`, () => model.paint(place, label)),
     }[setting.named];
     const tool = file === "recipe" ? makes() : null;
     this.element.append(this.head(h("span", { class: "number-box" }, this.list, tool)));
@@ -30,6 +30,28 @@ export class NameField extends Field {
   protected show(): void {
     const value = String(this.value ?? "");
     offer(this.list, this.model.names[this.setting.named], value, this.setting.optional ? "none" : "choose …");
+  }
+}
+
+/** A list of helper curves, each drawn on the head; one that is taken out leaves its curve in the recipe. */
+export class DrawnField extends Field {
+  private readonly rows = h("div", { class: "regions" });
+
+  constructor(model: Model, file: File, place: Place, setting: Setting) {
+    super(model, file, place, setting);
+    const draw = h("button", { type: "button", class: "quiet", onclick: () => model.draw(place, "a guide") }, "Draw a guide");
+    this.element.append(this.head(draw), this.rows);
+  }
+
+  protected show(): void {
+    const names = (this.value ?? []) as string[];
+    this.rows.replaceChildren(
+      ...names.map((name) => {
+        const without = names.filter((one) => one !== name);
+        const remove = iconButton("bin", `Remove ${name}`, () => this.send(without.length ? without : null, true));
+        return h("div", { class: "field-head" }, h("span", { class: "label" }, name.replaceAll("_", " ")), remove);
+      }),
+    );
   }
 }
 

@@ -13,8 +13,11 @@ const TOOLS = {
   add: "Goes to white: more of it",
   remove: "Goes to black: less of it (also Ctrl with a brush)",
   smooth: "Goes to the mean around (also Shift with a brush)",
+  comb: "Goes to the direction in which the brush moves",
 } as const;
 type Tool = keyof typeof TOOLS;
+const NUMBERS: Tool[] = ["add", "remove", "smooth"];
+const DIRECTIONS: Tool[] = ["comb", "remove", "smooth"];
 type Falloff = "smooth" | "sharp" | "flat";
 
 const STEP = 1.15; // of the radius, by a key
@@ -53,7 +56,7 @@ export class PaintTool {
       input.addEventListener("change", () => {
         this.tool = name as Tool;
       });
-      return h("label", { class: "choice", title }, input, h("span", {}, name));
+      return h("label", { class: "choice", title, "data-tool": name }, input, h("span", {}, name));
     });
     const row = (label: string, input: HTMLElement, more?: HTMLElement) =>
       h("div", { class: "field-head" }, h("label", { for: input.id }, label), input, more);
@@ -94,6 +97,9 @@ export class PaintTool {
   paint(place: Place, label: string): void {
     this.place = place;
     this.title.textContent = `Paint ${label}`;
+    const tools = place.at(-1) === "direction" ? DIRECTIONS : NUMBERS;
+    for (const choice of this.element.querySelectorAll<HTMLElement>("[data-tool]")) choice.hidden = !tools.includes(choice.dataset["tool"] as Tool);
+    if (!tools.includes(this.tool)) this.element.querySelector<HTMLInputElement>(`input[value="${tools[0]}"]`)!.click();
     this.show(true);
   }
 

@@ -30,6 +30,7 @@ export interface Setting {
     | "text"
     | "color"
     | "name"
+    | "drawn"
     | "regions"
     | "ramp"
     | "vector"
@@ -149,6 +150,7 @@ export class Schemas {
     else if (only["format"] === "color") setting.kind = "color";
     else if (only["type"] === "string") setting.kind = name in NAMED ? "name" : "text";
     else if (only["type"] === "object" && name === "region") setting.kind = "regions";
+    else if (only["type"] === "array" && name === "drawn") setting.kind = "drawn";
     else if (only["type"] === "array" && items && isPair(items)) setting.kind = "ramp";
     else if (only["type"] === "array" && isVector(only)) setting.kind = "vector";
     else if (only["type"] === "array" && items && this.resolve(items, null)["properties"])

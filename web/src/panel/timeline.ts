@@ -1,10 +1,11 @@
 // The frames of a shot or a cache: run, hold, go on, run again from a frame, scrub, and compare with another cache.
-// They are with the server: here are those about the one that is seen, as many as fit.
+// They are with the server: here are those about the one that is seen, as many as fit. A chart below shows their swing.
 
 import "./timeline.css";
 import { h, iconButton } from "../dom";
 import type { Model } from "../model";
 import { bindKey, plainKey } from "./keys";
+import { keptLabel, runHue, SwingChart } from "./swing";
 import type { Frame, Timeline } from "../protocol";
 import { OVERLAYS, overlayValues } from "../view/overlays";
 import type { Side } from "../view/looks";
@@ -28,7 +29,9 @@ export class TimelineBar {
   );
   private readonly watch = iconButton("play", "Play what is there (space)", () => this.toggle());
   private readonly rate = h("select", { class: "rate", "aria-label": "Frames a second of playback" });
-  private readonly against = h("select", { "aria-label": "Compare with a cache" });
+  private readonly against = h("select", { "aria-label": "Compare with a run or cache" });
+  private readonly swing: SwingChart;
+  private readonly chart = iconButton("chart", "Swing and earlier runs", () => this.showSwing(this.swing.element.hasAttribute("hidden")));
   /** What was asked for and has not come. */
   private readonly asked: Record<Layer, Set<number>> = { shot: new Set(), against: new Set() };
   private frame = 1;
@@ -45,20 +48,41 @@ export class TimelineBar {
     private readonly viewer: Viewer,
     private readonly seen: (frame: Frame) => void,
   ) {
+    this.swing = new SwingChart(model, (frame) => this.goTo(frame));
     model.on("overlay", () => this.overlay());
-    this.against.addEventListener("change", () => model.say({ kind: "against", name: this.against.value }));
+    this.against.addEventListener("change", () => this.compare(this.against.value));
     this.slider.addEventListener("input", () => this.goTo(Number(this.slider.value)));
     this.run.addEventListener("click", () => this.press());
     const frames = h("div", { class: "frames" }, this.slider, this.runs);
-    this.element.append(this.run, this.again, this.watch, this.rate, frames, this.readout, this.against);
+    this.element.append(this.run, this.again, this.watch, this.rate, frames, this.readout, this.against, this.chart, this.swing.element);
     this.rate.addEventListener("change", () => this.playing && (this.toggle(), this.toggle()));
     for (const topic of ["timeline", "role", "files"] as const) model.on(topic, () => this.update());
+    this.chart.setAttribute("aria-expanded", "false");
+    new ResizeObserver(() => this.tellHeight()).observe(this.element);
     bindKey({ keys: "Space", does: "play the frames that exist, or stop", on: plainKey(" "), run: () => model.timeline && this.toggle() });
     const mark = (event: KeyboardEvent) => model.timeline && this.mark(event.key.toLowerCase() === "i" ? "in" : "out");
     bindKey({ keys: "I and O", does: "in point, out point of playback at this frame; once more removes it", on: plainKey("i", "o"), run: mark });
     const jump = (event: KeyboardEvent) => this.jump(event.key === "Home" ? "first" : "last");
     bindKey({ keys: "Home and End", does: "first frame, last frame of playback", on: plainKey("Home", "End"), run: jump });
     bindKey({ keys: ", and .", does: "previous frame, next frame", on: plainKey(",", "."), run: (event) => this.by(event.key === "," ? -1 : 1) });
+  }
+
+  /** Compares with an earlier run, `run 2`, or a cache; with nothing for an empty name. */
+  private compare(name: string): void {
+    const run = this.model.timeline?.kept.find(({ number }) => name === `run ${number}`);
+    this.model.say(run ? { kind: "against", run: run.number } : { kind: "against", name });
+    if (run) this.showSwing(true);
+  }
+
+  /** Other panels stand above this one. */
+  private tellHeight(): void {
+    document.documentElement.style.setProperty("--timeline", `${this.element.offsetHeight + 8}px`);
+  }
+
+  private showSwing(on: boolean): void {
+    this.swing.element.toggleAttribute("hidden", !on);
+    this.chart.setAttribute("aria-expanded", String(on));
+    this.swing.show(this.frame);
   }
 
   /** Shows the frame that many frames on. */
@@ -202,11 +226,13 @@ export class TimelineBar {
     const caches = this.model.files.filter((name) => /\.usd[ac]?$/.test(name));
     const value = timeline.against;
     this.against.replaceChildren(
-      h("option", { value: "" }, value ? "end the comparison" : "compare with a cache …"),
-      ...caches.map((name) => h("option", { value: name }, name)),
+      h("option", { value: "" }, value ? "end the comparison" : "compare with …"),
+      ...group("Earlier runs", timeline.kept.map((kept): [string, string] => [`run ${kept.number}`, keptLabel(kept)])),
+      ...group("Caches", caches.map((name): [string, string] => [name, name])),
     );
     this.against.value = value;
     this.against.toggleAttribute("hidden", timeline.state === "none");
+    this.chart.toggleAttribute("hidden", timeline.state === "none");
     this.against.toggleAttribute("disabled", !role.leads);
     if (this.follows && ready !== undefined) this.show(ready);
     else this.draw();
@@ -317,6 +343,7 @@ export class TimelineBar {
     const known = this.known("shot");
     const stretch = known?.statistics["max_stretch"];
     if (known) this.seen(known);
+    this.swing.show(this.frame);
     const parts = [`frame ${this.frame}`];
     if (timeline.state === "rolling") parts[0] = `before the first frame: ${timeline.rolled} of ${timeline.preroll}`;
     else if (!timeline.frames.length) parts[0] = "not run yet";
@@ -339,12 +366,18 @@ function runMarks({ frames, runs, stale, first, last }: Timeline): HTMLElement[]
     while (to < frames.length && runs[to] === runs[from] && stale[to] === stale[from]) to++;
     if (!runs[from]) continue;
     const mark = h("span", { class: stale[from] ? "stale" : "" });
-    mark.style.setProperty("--hue", String((25 + 137 * (runs[from] - 1)) % 360));
+    mark.style.setProperty("--hue", String(runHue(runs[from])));
     mark.style.left = `${(100 * (frames[from] - first)) / span}%`;
     mark.style.width = `max(3px, ${(100 * (frames[to - 1] - frames[from])) / span}%)`;
     marks.push(mark);
   }
   return marks;
+}
+
+/** Options with a heading; none for no choices. */
+function group(label: string, choices: [string, string][]): HTMLElement[] {
+  const options = choices.map(([value, text]) => h("option", { value }, text));
+  return options.length ? [h("optgroup", { label }, ...options)] : [];
 }
 
 /** The place of the number that is nearest to another; numbers are in order. */

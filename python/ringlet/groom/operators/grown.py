@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+from hashlib import blake2b
 from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, model_validator
 
+from ringlet import _core
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.painted import painted_directions
 from ringlet.data.quantities import Quantity, Section, Varied, refuse
 from ringlet.groom.edge import EdgeScalp
 from ringlet.groom.mask import Mask
 from ringlet.groom.operators.guides import Guides
-from ringlet.groom.operators.operator import UP, Context, unit
+from ringlet.groom.operators.operator import UP, Context, packed, unit
 from ringlet.groom.parting import Direction, Parting
+
+DRAWN_IDS = 1 << 51  # of guides that are drawn, above those of guides that grow
+DRAWN_TOLERANCE = 0.02  # of a drawn root from the scalp, onto which it is moved [m]
 
 
 class Zone(Section):
@@ -88,7 +93,13 @@ class Grown(Guides):
         description="painted values: where they are higher, guides stand closer; none grow where they are 0",
     )
     direction: str | None = Field(
-        default=None, description="painted directions (a primvar of vectors) that replace the flow where they are not 0"
+        default=None,
+        description="painted directions, a primvar of vectors or a picture of [maps] in colors, that replace the flow "
+        "where they are not 0",
+    )
+    drawn: list[str] = Field(
+        default=[],
+        description="helper curves that are guides as they are drawn, from root to tip, besides those that grow",
     )
     part: Parting | None = Field(default=None, description="a parting; none when absent")
     zone: list[Zone] = Field(default=[], description="parts of the head with their own length and stand")
@@ -130,7 +141,23 @@ class Grown(Guides):
         steps = direction * (length / (self.points - 1))[:, None, None]
         points = np.concatenate([roots[:, None], roots[:, None] + np.cumsum(steps, axis=1)], axis=1)
         offsets = offsets_from_counts(np.full(len(ids), self.points))
-        return Curves(np.ascontiguousarray(points.reshape(-1, 3)), offsets, ids, bound)
+        grown = Curves(np.ascontiguousarray(points.reshape(-1, 3)), offsets, ids, bound)
+        return Curves.joined([grown, *(self._drawn(name, context) for name in self.drawn)])
+
+    def _drawn(self, name: str, context: Context) -> Curves:
+        """Guides from helper curves, whose roots are moved onto the scalp; their ids depend on the name alone.
+
+        Raises UserError for an unknown name, and for roots off the scalp.
+        """
+        curves = context.helper(name, "drawn")
+        first = DRAWN_IDS + (int.from_bytes(blake2b(name.encode(), digest_size=4).digest()) << 8)
+        ids = first + np.arange(len(curves), dtype=np.int64)
+        points = _core.resample_curves(*packed(curves), self.points)
+        drawn = Curves(points, offsets_from_counts(np.full(len(ids), self.points)), ids)
+        bound = context.scalp.bind(drawn, DRAWN_TOLERANCE, f"guides.drawn, '{name}'")
+        roots = context.scalp.positions(bound.curve["root_triangle"], bound.curve["root_barycentric"])
+        bound.points += np.repeat(roots - bound.roots, bound.counts, axis=0)
+        return Curves(bound.points, bound.offsets, ids, {**bound.curve, **context.scalp.attributes(roots)})
 
     def _flow(self, seeds: Curves, frames: NDArray, context: Context) -> NDArray[np.float64]:
         """Unit tangents of the surface in the direction of growth, shape (n, 3); on an edge, those of its ``turn``.

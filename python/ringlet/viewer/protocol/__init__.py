@@ -38,6 +38,7 @@ from ringlet.viewer.protocol.from_page import (
     Step,
     Unsculpt,
     UseCopy,
+    UseRun,
     Watch,
 )
 from ringlet.viewer.protocol.groom import (
@@ -110,6 +111,7 @@ from ringlet.viewer.protocol.session import (
     Files,
     Followed,
     Heard,
+    KeptRun,
     Notice,
     Person,
     Pointer,
@@ -201,6 +203,7 @@ __all__ = [
     "Isolate",
     "Keep",
     "KeepView",
+    "KeptRun",
     "Lamp",
     "Lead",
     "ListPresets",
@@ -264,6 +267,7 @@ __all__ = [
     "Try",
     "Unsculpt",
     "UseCopy",
+    "UseRun",
     "Views",
     "Watch",
     "Welcome",

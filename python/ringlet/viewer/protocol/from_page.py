@@ -291,10 +291,21 @@ class Play(Message):
 
 
 class Against(Message):
-    """Shows the frames of another cache of the project for comparison; an empty name removes them."""
+    """Compares the shot with a cache of the project or an earlier take; without a name and a run with nothing.
+
+    run: number of the last run of the take
+    """
 
     kind: Literal["against"] = "against"
     name: str = Field(default="", max_length=240)
+    run: Row = 0
+
+
+class UseRun(Message):
+    """Gives the shot the settings of an earlier take, as one undo step."""
+
+    kind: Literal["use_run"] = "use_run"
+    run: Row
 
 
 class Watch(Message):
@@ -340,6 +351,7 @@ FromPage = Annotated[
     | Hand
     | Play
     | Against
+    | UseRun
     | Render
     | StopRender
     | Watch

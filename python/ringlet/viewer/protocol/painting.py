@@ -23,13 +23,14 @@ class Paint(Message):
     """Moves a brush over the scalp, which changes the map that a setting names; a setting without one gets a new map.
 
     at:       centre of the brush [m]; by: its displacement since the last message of this gesture [m]
-    tool:     add goes to white (1), remove to black (0), smooth to the mean around
+    tool:     add goes to white (1), remove to black (0) or no direction, smooth to the mean around, comb to the
+              direction in which the brush moves
     strength: fraction of the way that one pass of the brush goes at its centre
     """
 
     kind: Literal["paint"] = "paint"
     place: Place = Field(max_length=8)
-    tool: Literal["add", "remove", "smooth"]
+    tool: Literal["add", "remove", "smooth", "comb"]
     at: Position
     by: Position
     radius: float = Field(gt=0.0, le=1.0)
@@ -41,7 +42,7 @@ class Paint(Message):
 
 
 class Draw(Message):
-    """Draws the helper curve that a setting names; a setting without one gets a new curve.
+    """Draws the helper curve that a setting names; a setting without one gets a new curve, a list one more.
 
     place:  of the setting in the recipe, such as ``["guides", "part", "line"]``
     points: of the stroke [m]
@@ -57,8 +58,9 @@ class Painted(Message):
     """A map on the scalp: its value at each point of the mesh of the region, 255 for white.
 
     map: its name; empty for a setting that names none yet
+    directions: those of a map of directions at each point, whose lengths are the values; empty for another map
     """
 
     kind: Literal["painted"] = "painted"
     map: str
-    arrays: ClassVar[dict[str, str]] = {"points": "f4", "triangles": "u4", "values": "u1"}
+    arrays: ClassVar[dict[str, str]] = {"points": "f4", "triangles": "u4", "values": "u1", "directions": "f4"}

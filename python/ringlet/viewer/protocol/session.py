@@ -133,12 +133,32 @@ class Document(Message):
     changes: list[Change]
 
 
+class KeptRun(Message):
+    """An earlier take of the shot, by the number of its last run.
+
+    first, last: its frames
+    contact:     whether its hair touches; without contact it swings freely
+    same_groom:  whether it is of the groom that is shown
+    changes:     settings that differ from those of the shot, with their values
+    """
+
+    number: int
+    first: float
+    last: float
+    contact: bool
+    same_groom: bool
+    changes: list[str]
+
+
 class Timeline(Message):
-    """State of the simulation, and the existing frames of the shot and of the cache to compare with.
+    """State of the simulation, and the existing frames of the shot and of what it is compared with.
 
     key:   changes when existing frames become invalid
     runs:  number of the run that made each frame, from 1; 0 for frames of a file
     stale: 1 for frames of other settings than the present ones
+    kept:  earlier takes, with other settings or of other grooms
+    swings, beside_swings: three numbers a frame, for frames of runs: mean speed of tips and of roots [m/s], and the
+           estimated fraction of the converged motion; NaN where it is not known
     """
 
     kind: Literal["timeline"] = "timeline"
@@ -150,7 +170,15 @@ class Timeline(Message):
     preroll: int
     key: int
     against: str = ""
-    arrays: ClassVar[dict[str, str]] = {"frames": "f8", "beside": "f8", "runs": "i4", "stale": "u1"}
+    kept: list[KeptRun] = Field(default_factory=list)
+    arrays: ClassVar[dict[str, str]] = {
+        "frames": "f8",
+        "beside": "f8",
+        "runs": "i4",
+        "stale": "u1",
+        "swings": "f4",
+        "beside_swings": "f4",
+    }
 
 
 class Compared(Message):
