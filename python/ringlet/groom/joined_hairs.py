@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 
 from ringlet.data.curves import Curves
 from ringlet.data.groom import GROOM, Groom
+from ringlet.deform import Hairs
 from ringlet.groom import hairs as one_groom
 from ringlet.groom.hair_settings import hair_settings
-from ringlet.groom.hairs import HairMemory, Hairs
+from ringlet.groom.hairs import HairMemory
 from ringlet.groom.joined_layout import joined_layout
 from ringlet.groom.several import WITHOUT, grooms_of, id_offsets
 
@@ -91,13 +92,29 @@ AnyHairs = Hairs | JoinedHairs
 
 
 def make_hairs(
-    groom: Groom, *, fraction: float = 1.0, wider: bool = False, memory: HairMemory | None = None
+    groom: Groom,
+    *,
+    fraction: float = 1.0,
+    wider: bool = False,
+    points: int | None = None,
+    memory: HairMemory | None = None,
 ) -> AnyHairs:
-    """Makes the hairs of a groom as ``hairs.make_hairs``, or those of each of several that are joined."""
+    """Makes the hairs of a groom as ``hairs.make_hairs``, or those of each of several that are joined.
+
+    points: of each hair, in place of those that the groom sets
+    """
+    if points is not None:
+        groom = _with_points(groom, points)
     if not groom.grooms:
         return one_groom.make_hairs(groom, fraction=fraction, wider=wider, memory=memory)
     made = {name: one_groom.make_hairs(one, fraction=fraction, wider=wider) for name, one in grooms_of(groom).items()}
     return _joined(groom, made, _joined_curves(groom, made))
+
+
+def _with_points(groom: Groom, points: int) -> Groom:
+    """The same groom with another number of points of each hair."""
+    grooms = {name: {**one, "hairs": {**one["hairs"], "points": points}} for name, one in groom.grooms.items()}
+    return replace(groom, hairs={**groom.hairs, "points": points}, grooms=grooms)
 
 
 def lay_hairs(groom: Groom, *, memory: HairMemory | None = None) -> AnyHairs:
