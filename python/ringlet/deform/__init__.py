@@ -1,5 +1,6 @@
 """Hairs that are carried by the locks of a groom."""
 
 from ringlet.deform.hairs import Hairs, root_frames
+from ringlet.deform.joined_hairs import AnyHairs, JoinedHairs
 
-__all__ = ["Hairs", "root_frames"]
+__all__ = ["AnyHairs", "Hairs", "JoinedHairs", "root_frames"]

@@ -36,6 +36,11 @@ class Hairs:
     layout: dict[str, Any]
     root: NDArray[np.float32] | None = None
 
+    @property
+    def parts(self) -> list[Hairs]:
+        """These, as those of the only groom."""
+        return [self]
+
     def deformed(
         self,
         lock_points: NDArray,
