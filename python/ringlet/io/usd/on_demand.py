@@ -3,9 +3,9 @@
 ``/groom/hairs`` is a ``GenerativeProcedural``: places of hairs in their locks, which stand once for all frames. Locks,
 head and their motion are those of the layer below. Of several grooms each has its own prim, ``/groom/hairs/NAME``.
 
-Primvars ``ringlet:layout:…`` are the inputs of the kernel (src/ringlet/groom/hairs.h), in SI units: ``uniform`` with a
-value or a row a hair, ``constant`` with a row a lock, or a value a point of hairs. Lengths across a lock are in half
-precision. The extents have a sample at each frame of the hairs.
+Primvars ``ringlet:layout:…`` are the inputs of the kernel (src/ringlet/groom/hairs.h), in SI units. Those of hairs are
+``uniform``; those of locks, and ramps along hairs, are ``constant``. Lengths across a lock are in half precision.
+The extents have a sample at each frame of the hairs.
 """
 
 from __future__ import annotations
