@@ -5,6 +5,8 @@ Needs bpy in a separate environment, since it is large and pins libraries: make 
 
 from __future__ import annotations
 
+import os
+import sys
 import zipfile
 from importlib.util import find_spec
 from pathlib import Path
@@ -12,10 +14,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from blender import MISSING, PYTHON, build_extension, run
-from ringlet.io import HairWriter, read_curves, read_space, write_cache, write_groom
+from ringlet.io import HairWriter, read_curves, read_hairs, read_space, write_cache, write_groom
 from usd_scenes import hairs_of, make_groom, write_head
 
-from ringlet import Cache, convert
+from ringlet import Cache, convert, write_hairs
 
 pytestmark = pytest.mark.skipif(not PYTHON.exists(), reason=MISSING)
 
@@ -107,6 +109,17 @@ def test_the_add_on_sets_the_surface_and_plays_the_file(groom, blender, tmp_path
     assert [objects[name]["hidden"] for name in ("locks", "guides", "hairs")] == [True, True, False]
     first, last = (np.array(objects["hairs"]["frames"][frame]) for frame in ("1", "3"))
     np.testing.assert_allclose(last - first, np.tile([0, 0, 0.02], (len(first), 1)), atol=1e-6)
+
+
+def test_the_add_on_expands_hairs_on_demand(pipeline, extension, tmp_path):
+    made = tmp_path / "demand.usdc"
+    write_hairs(pipeline / "cache.usdc", made, on_demand=True)
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    objects = run("in_blender.py", tmp_path / "scene.json", extension, "add-on", made, PATH=path)["objects"]
+    assert [objects[name]["hidden"] for name in ("locks", "guides", "hairs")] == [True, True, False]
+    for frame in (1, 3):
+        points = z_up(read_hairs(pipeline / "hair.usdc", frame).points)
+        np.testing.assert_allclose(objects["hairs"]["frames"][str(frame)], points, atol=1e-5)
 
 
 def test_the_add_on_plays_a_cache_on_a_groom(groom, blender, tmp_path):

@@ -7,14 +7,18 @@ It brings in curves, widths, attributes, the head and all motion. What it does n
 from __future__ import annotations
 
 import re
+import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
 import bpy
 import numpy as np
 
+from . import installation
 from .refused import Refused
+from .session import clean_environment
 
+HAIRS = "/groom/hairs"
 PATH = "ringlet_path"  # custom property: the prim that an object came from
 CACHE = "Ringlet cache"  # the modifier that plays
 MARGIN = 1e-4  # of texture coordinates
@@ -29,7 +33,10 @@ class Found:
 
 
 def import_groom(context: bpy.types.Context, path: str, *, show_locks: bool = False) -> Found:
-    """Brings in a groom, a cache or hairs. Where there are hairs, locks and guides are hidden unless wanted."""
+    """Brings in a groom, a cache or hairs. Where there are hairs, locks and guides are hidden unless wanted.
+
+    Hairs on demand are expanded to a file next to theirs, meanwhile Blender waits.
+    """
     require_file(path)
     before = set(bpy.data.objects)
     # Locks are guides to USD; and only with every transform an object of its own do objects tell their prims.
@@ -42,6 +49,12 @@ def import_groom(context: bpy.types.Context, path: str, *, show_locks: bool = Fa
         for thing in new:
             bpy.data.objects.remove(thing)
         raise Refused(f"{Path(path).name}: is no groom of Ringlet's; open it with Universal Scene Description instead")
+    if not any(thing[PATH].startswith(HAIRS) for thing in curves.values()):
+        procedural = [thing for thing in new if thing[PATH].startswith(HAIRS)]  # Blender shows it as an empty
+        if procedural:
+            for thing in new:
+                bpy.data.objects.remove(thing)
+            return import_groom(context, expanded(path), show_locks=show_locks)
 
     surface, uv_map = find_surface(curves["locks"], [thing for thing in new if thing.type == "MESH"])
     for thing in curves.values() if surface else ():
@@ -53,6 +66,21 @@ def import_groom(context: bpy.types.Context, path: str, *, show_locks: bool = Fa
         curves[name].hide_set(hidden)
     context.view_layer.update()
     return Found(curves, surface)
+
+
+def expanded(path: str) -> str:
+    """Writes the hairs on demand of a file with their points, next to it; returns the new path."""
+    source = Path(path)
+    target = source.with_name(f"{source.stem}_points.usdc")
+    command = installation.command()
+    if command is None:
+        raise Refused(f"{source.name}: holds hairs on demand, which Ringlet expands; install it in the preferences")
+    arguments = [*command, "hair", str(source), "-o", str(target)]
+    done = subprocess.run(arguments, capture_output=True, text=True, env=clean_environment(), check=False)
+    if done.returncode:
+        reason = (done.stderr.strip().splitlines() or ["no reason given"])[-1]
+        raise Refused(f"{source.name}: its hairs cannot be expanded ({reason.removeprefix('error: ')})")
+    return str(target)
 
 
 def find_surface(locks: bpy.types.Object, meshes: list[bpy.types.Object]) -> tuple[bpy.types.Object | None, str | None]:

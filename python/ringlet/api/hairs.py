@@ -3,33 +3,59 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 from ringlet.api.grooms import read_groom
 from ringlet.api.progress import Progress
 from ringlet.api.shots import scalp_clip
+from ringlet.data import limits
 from ringlet.data.binding import check_roots, root_places
+from ringlet.data.detail import LEVELS, screen_share
 from ringlet.data.errors import UserError
 from ringlet.data.reads import recorded
 
 if TYPE_CHECKING:
     from ringlet.data.groom import Groom
+    from ringlet.data.mesh import Clip
     from ringlet.groom import AnyHairs, Memory
+    from ringlet.io import CacheFile
 
 __all__ = ["build_hairs", "measure_hairs", "write_hairs"]
 
 
-def build_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memory: Memory | None = None) -> AnyHairs:
+def build_hairs(
+    groom: Groom,
+    *,
+    fraction: float = 1.0,
+    wider: bool = False,
+    points: int | None = None,
+    point_share: float = 1.0,
+    memory: Memory | None = None,
+) -> AnyHairs:
     """Makes the hairs of every lock. ``fraction`` of them: the same ones every time, in (0, 1]; with ``wider`` these
     make up by their width for those left out.
 
+    points: of each hair, in place of those that the groom sets
+    point_share: part of these to make; hairs with a coil of their own keep all
     memory: that of ``build_groom``: hairs are only carried along when nothing but the shape of locks has changed, and
             the next call writes over their points
     """
     from ringlet import groom as grooms
 
-    return grooms.make_hairs(groom, fraction=fraction, wider=wider, memory=memory.hairs if memory else None)
+    return grooms.make_hairs(
+        groom,
+        fraction=fraction,
+        wider=wider,
+        points=points,
+        point_share=point_share,
+        memory=memory.hairs if memory else None,
+    )
 
 
 def measure_hairs(
@@ -51,6 +77,15 @@ def measure_hairs(
     return grooms.hair_measures(made, hairs.curves if hairs is not None else None)
 
 
+class _Motion(NamedTuple):
+    """What carries hairs: ``frame`` (None at rest), locks, scalp and surfaces, as ``Hairs.deformed`` takes them."""
+
+    frame: float | None
+    locks: NDArray[np.floating]
+    scalp: NDArray[np.floating]
+    surfaces: list[tuple[NDArray, NDArray]]
+
+
 @recorded()
 def write_hairs(
     groom: Path | str,
@@ -60,6 +95,12 @@ def write_hairs(
     frames: tuple[int, int] | None = None,
     fraction: float = 1.0,
     wider: bool = False,
+    points: int | None = None,
+    camera: str | None = None,
+    camera_file: Path | str | None = None,
+    pixels: int = 1920,
+    lod: bool = False,
+    on_demand: bool = False,
     velocities: bool = False,
     variant: str | None = None,
     measures: dict[str, float] | None = None,
@@ -67,19 +108,32 @@ def write_hairs(
 ) -> dict[str, int]:
     """Writes the hairs of the USD file ``groom``, at rest, or carried by the guides of ``cache`` through ``frames``.
 
-    They stay on that side of the scalp, and of what else the file shows, where their lock is.
+    They stay on that side of the scalp, and of what else the file shows, where their lock is. Hairs on demand in the
+    file are expanded.
 
     groom:      a groom, or a cache by itself, which lies over its groom
     frames:     the first and the last of the cache; all by default
+    points:     of each hair; by default those that the groom sets
+    camera:     path of a camera, which chooses the fraction: hairs are thinned out and widened up to half a pixel,
+                where they come nearest in all frames
+    camera_file: a USD file that has the camera; by default the file of the hairs
+    pixels:     width of the picture of that camera
+    lod:        writes the levels of detail ``LEVELS`` as variants ``LOD0``, ``LOD1``, … of ``/groom/hairs``
+    on_demand:  writes what a renderer makes hairs of, in place of their points
     velocities: writes those of hairs in motion too, in units per second, which doubles the size of the file
     variant:    of the groom, in place of the one that is selected in it, or that the cache was made of
-    measures:   receives the entries of ``measure_hairs``
+    measures:   receives the entries of ``measure_hairs``, and ``fraction``, where a camera chose it
 
-    Returns how many ``locks``, ``hairs``, ``points`` and ``frames`` there are.
+    Returns how many ``locks``, ``hairs``, ``points`` and ``frames`` there are; hairs and points of the finest level.
     """
     from ringlet import io
 
-    if cache is None and io.is_cache(groom):
+    _refuse_together(lod=lod, on_demand=on_demand, camera=camera is not None, fraction=fraction < 1.0)
+    _refuse_together(on_demand=on_demand, velocities=velocities)
+    limits.check_count("points", 2 if points is None else points - 1, limits.POINTS - 1)
+    limits.check_count("pixels", pixels, limits.PIXELS)
+    expanded = io.has_hairs_on_demand(groom)
+    if cache is None and (io.is_cache(groom) or (expanded and len(io.read_hair_frames(groom)))):
         cache = groom
     if cache is None and frames is not None:
         asked = f"{frames[0]}:{frames[1]}"
@@ -87,42 +141,143 @@ def write_hairs(
     if variant is None and cache is not None:
         variant = read_groom(cache).variant
     locks = read_groom(groom, variant=variant)
-    hairs = build_hairs(locks, fraction=fraction, wider=wider)
-    if measures is not None:
-        measures |= measure_hairs(locks, hairs=hairs if fraction == 1.0 else None)
-    written = 0
-    shown = io.read_meshes(groom) or [locks.scalp]  # a head of an OBJ is in no stage
-    around = [(mesh.points, mesh.triangles) for mesh in shown]
-    hairs.curves.points = hairs.deformed(locks.locks.points, locks.scalp.points, surfaces=around)
-    if cache is None:
-        with io.HairWriter(Path(path), locks, hairs.curves, Path(groom)) as writer:
-            writer.add(None, hairs.curves.points, around=locks.scalp.points)
+    if camera is not None:
+        fraction, wider = _share_of_camera(groom, cache, locks, frames, (camera_file, camera), pixels), True
+    if expanded:
+        if lod or on_demand or fraction < 1.0 or points:
+            raise UserError(f"{groom}: its hairs are made already; ask its groom or its cache for other ones")
+        levels = [io.read_on_demand(groom)]
     else:
-        with (
-            io.open_cache(cache) as moved,
-            io.HairWriter(Path(path), locks, hairs.curves, Path(cache), velocities) as writer,
-        ):
-            chosen = moved.within(frames)
-            clip = scalp_clip(locks, (math.floor(chosen[0]), math.ceil(chosen[-1])))
-            for frame in chosen:
-                scalp, points = clip.at(frame), moved.points(frame)
-                places = root_places(locks.locks, scalp, locks.scalp.triangles)
-                check_roots(
-                    points[locks.locks.offsets[:-1]],
-                    places,
-                    locks.locks.ids,
-                    f"{cache} at frame {frame:g}",
-                    "simulate again",
-                    moved.lag(frame),
-                )
-                surfaces = moved.surfaces(frame) or [(scalp, locks.scalp.triangles)]
-                writer.add(frame, hairs.deformed(points, scalp, surfaces=surfaces), around=scalp)
-                written += 1
-                if progress:
-                    progress("hairs", written, len(chosen))
+        levels = [build_hairs(locks, fraction=fraction, wider=wider, points=points)]
+        for level in LEVELS[1:] if lod else ():
+            hairs = build_hairs(locks, fraction=level.share, wider=True, points=points, point_share=level.points)
+            levels.append(hairs)
+    finest = levels[0]
+    if measures is not None:
+        if not expanded:
+            measures |= measure_hairs(locks, hairs=finest if fraction == 1.0 else None)
+        if camera is not None:
+            measures["fraction"] = fraction
+    rest = _Motion(None, locks.locks.points, locks.scalp.points, _surfaces_at_rest(groom, locks))
+    for hairs in levels:
+        hairs.curves.points = hairs.deformed(rest.locks, rest.scalp, surfaces=rest.surfaces)
+    under, written = Path(groom if cache is None else cache), 0
+    if expanded:
+        under = io.layer_under_on_demand(groom)
+    with _motion(groom, cache, locks, frames) as (total, moments):
+        if on_demand:
+            with io.OnDemandWriter(Path(path), locks, finest, under) as writer:
+                writer.add(None, rest.locks, rest.scalp)
+                for at in moments:
+                    writer.add(at.frame, at.locks, at.scalp)
+                    written = _reported(written, total, progress)
+        else:
+            coarser = [hairs.curves for hairs in levels[1:]]
+            with io.HairWriter(Path(path), locks, finest.curves, under, velocities, coarser) as writer:
+                for level, hairs in enumerate(levels):
+                    if cache is None:
+                        writer.add(None, hairs.curves.points, around=rest.scalp, level=level)
+                for at in moments:
+                    for level, hairs in enumerate(levels):
+                        moved = hairs.deformed(at.locks, at.scalp, surfaces=at.surfaces)
+                        writer.add(at.frame, moved, around=at.scalp, level=level)
+                    written = _reported(written, total, progress)
     return {
         "locks": len(locks.locks),
-        "hairs": len(hairs.curves),
-        "points": len(hairs.curves.points),
+        "hairs": len(finest.curves),
+        "points": len(finest.curves.points),
         "frames": written,
     }
+
+
+def _reported(written: int, total: int, progress: Progress | None) -> int:
+    """The number of written frames after another one."""
+    if progress:
+        progress("hairs", written + 1, total)
+    return written + 1
+
+
+def _refuse_together(**asked: bool) -> None:
+    """Raises UserError where the first of these options is asked for together with another."""
+    (first, wanted), *others = asked.items()
+    for name, also in others:
+        if wanted and also:
+            one, other = (word.replace("_", "-") for word in (first, name))
+            raise UserError(f"hair: --{one} does not go together with --{other}; leave one of them out")
+
+
+def _surfaces_at_rest(groom: Path | str, locks: Groom) -> list[tuple[NDArray, NDArray]]:
+    from ringlet import io
+
+    shown = io.read_meshes(groom) or [locks.scalp]  # a head of an OBJ is in no stage
+    return [(mesh.points, mesh.triangles) for mesh in shown]
+
+
+@contextmanager
+def _motion(
+    groom: Path | str, cache: Path | str | None, locks: Groom, frames: tuple[int, int] | None
+) -> Iterator[tuple[int, Iterator[_Motion]]]:
+    """The number of frames of a cache, and what carries hairs at each; none without a cache."""
+    from ringlet import io
+
+    if cache is None:
+        yield 0, iter(())
+        return
+    with io.open_cache(cache) as moved:
+        chosen = moved.within(frames if frames is not None else _made_frames(groom))
+        clip = scalp_clip(locks, (math.floor(chosen[0]), math.ceil(chosen[-1])))
+        yield len(chosen), (_motion_at(cache, moved, locks, clip, float(frame)) for frame in chosen)
+
+
+def _made_frames(groom: Path | str) -> tuple[int, int] | None:
+    """First and last frame of hairs on demand in a file; None for another file."""
+    from ringlet import io
+
+    if not io.has_hairs_on_demand(groom):
+        return None
+    made = io.read_hair_frames(groom)
+    return int(made[0]), int(made[-1])
+
+
+def _motion_at(cache: Path | str, moved: CacheFile, locks: Groom, clip: Clip, frame: float) -> _Motion:
+    """What carries hairs at a frame; raises UserError for locks that are not on the scalp."""
+    scalp, points = clip.at(frame), moved.points(frame)
+    places = root_places(locks.locks, scalp, locks.scalp.triangles)
+    check_roots(
+        points[locks.locks.offsets[:-1]],
+        places,
+        locks.locks.ids,
+        f"{cache} at frame {frame:g}",
+        "simulate again",
+        moved.lag(frame),
+    )
+    return _Motion(frame, points, scalp, moved.surfaces(frame) or [(scalp, locks.scalp.triangles)])
+
+
+def _share_of_camera(
+    groom: Path | str,
+    cache: Path | str | None,
+    locks: Groom,
+    frames: tuple[int, int] | None,
+    camera: tuple[Path | str | None, str],
+    pixels: int,
+) -> float:
+    """The largest share of the hairs that a camera, a prim of a file, needs in any frame.
+
+    Raises UserError where no lock is in front of it.
+    """
+    from ringlet import io
+
+    sample = build_hairs(locks, fraction=0.001)
+    width = float(np.median(sample.curves.point["width"].reshape(len(sample.curves), -1).max(axis=1)))
+    under = groom if cache is None else cache
+    stage, prim, share = camera[0] or under, camera[1], 0.0
+    with _motion(groom, cache, locks, frames) as (_, moments):
+        for at in [_Motion(None, locks.locks.points, locks.scalp.points, [])] if cache is None else moments:
+            seen = io.read_camera(stage, prim, at.frame)
+            depths = seen.depths(at.locks)
+            if depths.max() > 0.0:
+                share = max(share, screen_share(width, float(depths.min()), seen, pixels))
+    if not share:
+        raise UserError(f"{stage}: camera {prim} has no hair in front of it; turn it, or choose another")
+    return share

@@ -35,6 +35,45 @@ def hair(
     wider: Annotated[
         bool, typer.Option("--wider", help="With --fraction: wider hairs, which cover as much as all of them.")
     ] = False,
+    points: Annotated[
+        int | None,
+        typer.Option(
+            "--points",
+            min=2,
+            max=ringlet.limits.POINTS,
+            metavar="N",
+            help="Points of each hair; those of the groom by default.",
+            show_default=False,
+        ),
+    ] = None,
+    camera: Annotated[
+        str | None,
+        typer.Option(
+            "--camera",
+            metavar="PRIM",
+            help="Thin hairs out, and widen them, as far as this camera does not see it.",
+            show_default=False,
+        ),
+    ] = None,
+    camera_file: Annotated[
+        Path | None,
+        typer.Option(
+            "--camera-file",
+            metavar="STAGE",
+            help="A USD file that has the camera; that of the hairs by default.",
+            show_default=False,
+        ),
+    ] = None,
+    pixels: Annotated[
+        int, typer.Option("--pixels", min=1, max=ringlet.limits.PIXELS, help="Width of the picture of --camera.")
+    ] = 1920,
+    lod: Annotated[
+        bool, typer.Option("--lod", help="Write levels of detail, as the variants LOD0 to LOD3 of /groom/hairs.")
+    ] = False,
+    on_demand: Annotated[
+        bool,
+        typer.Option("--on-demand", help="Write what hairs are made of while they are rendered, not their points."),
+    ] = False,
     velocities: Annotated[
         bool, typer.Option("--velocities", help="Write the velocities of points, which doubles the size of the file.")
     ] = False,
@@ -44,7 +83,10 @@ def hair(
 ) -> None:
     """Makes the hairs of a GROOM, frame by frame where there is a cache.
 
-    Example: ringlet hair groom.usdc --cache cache.usdc -o hair.usdc
+    A GROOM with hairs on demand is expanded to hairs with points.
+
+    Examples: ringlet hair groom.usdc --cache cache.usdc -o hair.usdc · ringlet hair cache.usdc --on-demand ·
+    ringlet hair cache.usdc --lod · ringlet hair cache.usdc --camera /cam --camera-file shot.usd
     """
     measures: dict[str, float] = {}
     with ringlet.Run("hair", report) as run, shown_progress() as progress:
@@ -56,6 +98,12 @@ def hair(
                 frames=frames,
                 fraction=fraction,
                 wider=wider,
+                points=points,
+                camera=camera,
+                camera_file=camera_file,
+                pixels=pixels,
+                lod=lod,
+                on_demand=on_demand,
                 velocities=velocities,
                 variant=variant,
                 measures=measures,
@@ -64,4 +112,7 @@ def hair(
         run.count(**counts)
     wrote(output, run.counts, as_json, **measures)
     if not as_json:
-        print(density(measures))
+        if "fraction" in measures:
+            print(f"{measures['fraction']:.1%} of the hairs, as {camera} sees them on {pixels} pixels")
+        if len(measures) > ("fraction" in measures):
+            print(density(measures))

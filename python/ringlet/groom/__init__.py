@@ -1,6 +1,7 @@
 """The groom: builds guides, locks and render hairs from a recipe and a scalp mesh."""
 
 from ringlet.data.groom import Groom
+from ringlet.deform import AnyHairs, Hairs, JoinedHairs
 from ringlet.groom.check import Allowed, check_groom
 from ringlet.groom.color import hair_colors
 from ringlet.groom.density import hair_count, hairs_per_cm2
@@ -8,8 +9,8 @@ from ringlet.groom.edits_file import add_points, add_settings, release, restored
 from ringlet.groom.fix import fix_groom
 from ringlet.groom.hair_measures import hair_cover, hair_measures, lock_thickness
 from ringlet.groom.hair_settings import HairSettings
-from ringlet.groom.hairs import HairMemory, Hairs
-from ringlet.groom.joined_hairs import AnyHairs, JoinedHairs, lay_hairs, make_hairs
+from ringlet.groom.hairs import HairMemory
+from ringlet.groom.joined_hairs import lay_hairs, make_hairs
 from ringlet.groom.presets import PRESETS
 from ringlet.groom.rebind import rebind
 from ringlet.groom.recipe import Recipe, parse_recipe, read_recipe, schema

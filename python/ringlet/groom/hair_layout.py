@@ -14,6 +14,7 @@ from ringlet.data.groom import SECTION, Groom
 from ringlet.data.pigment import FLATNESS, TWIST
 from ringlet.data.quantities import Quantity
 from ringlet.data.random import Random, soft_threshold
+from ringlet.deform import root_frames
 from ringlet.groom import felt, hair_curl
 from ringlet.groom.adopted import place_adopted
 from ringlet.groom.density import groom_areas, hair_region, lock_counts
@@ -168,19 +169,6 @@ def lock_joins(locks: Curves) -> NDArray[np.float64]:
     if JOIN not in locks.curve:
         return np.zeros(len(locks))
     return np.minimum(locks.curve[JOIN] / np.maximum(locks.lengths(), 1e-9), LATEST_JOIN)
-
-
-def root_frames(groom: Groom, at: NDArray[np.float64], when: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Roots of the locks [m], shape (locks, 3), and frames of the scalp there, shape (locks, 3, 3).
-
-    at:   points of the scalp [m], shape (n, 3)
-    when: which points these are, for messages
-    """
-    groom.check_roots(at, when, "hairs")
-    bound = groom.locks.curve
-    return _core.root_frames(
-        np.ascontiguousarray(at, np.float64), groom.scalp.triangles, bound["root_triangle"], bound["root_barycentric"]
-    )
 
 
 def _disk(settings: HairSettings, ids: NDArray, number: NDArray, full_count: NDArray) -> NDArray[np.float64]:

@@ -12,6 +12,12 @@ from ringlet.io.usd.head import head_path, write_head
 from ringlet.io.usd.host_meshes import PolygonMesh, write_polygon_meshes
 from ringlet.io.usd.mesh import Body, read_bodies, read_body, read_meshes, surface_paths, unread_surfaces
 from ringlet.io.usd.offsets import read_offsets, write_offsets
+from ringlet.io.usd.on_demand import (
+    OnDemandWriter,
+    has_hairs_on_demand,
+    layer_under_on_demand,
+    read_on_demand,
+)
 from ringlet.io.usd.rest import read_rest, write_rest
 from ringlet.io.usd.stage import check_target
 from ringlet.io.usd.touches import heat, read_touches, start_marks, write_touches
@@ -21,16 +27,19 @@ __all__ = [
     "CacheFile",
     "CacheWriter",
     "HairWriter",
+    "OnDemandWriter",
     "PolygonMesh",
     "as_written",
     "cache_groom_path",
     "camera_paths",
     "check_target",
     "format_of",
+    "has_hairs_on_demand",
     "head_path",
     "heat",
     "is_cache",
     "is_groom",
+    "layer_under_on_demand",
     "open_cache",
     "open_scene",
     "problems",
@@ -46,6 +55,7 @@ __all__ = [
     "read_mesh",
     "read_meshes",
     "read_offsets",
+    "read_on_demand",
     "read_rest",
     "read_space",
     "read_stage",

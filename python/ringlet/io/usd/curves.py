@@ -121,9 +121,7 @@ def own_curves(source: Source, prim: Usd.Prim, time: Usd.TimeCode | None = None,
     if ids is None or len(ids) != len(counts):
         raise UserError(f"{where}: has no ringlet:id for each of its {len(counts)} curves; write the file again")
     curves = Curves(points, offsets_from_counts(counts), np.array(ids, np.int64))
-    for primvar in UsdGeom.PrimvarsAPI(prim).GetPrimvarsWithAuthoredValues():
-        if (name := primvar.GetPrimvarName()) not in (f"{OWN}id", *COMMON):
-            _add_own(curves, primvar, original_name(primvar.GetAttr(), name.removeprefix(OWN)), where)
+    add_own_attributes(curves, prim, where)
     schema = UsdGeom.BasisCurves(prim)
     if schema.GetWidthsInterpolation() == UsdGeom.Tokens.vertex and "width" not in curves.curve:
         widths = np.array(schema.GetWidthsAttr().Get() or [], np.float32)
@@ -131,6 +129,17 @@ def own_curves(source: Source, prim: Usd.Prim, time: Usd.TimeCode | None = None,
             raise UserError(f"{where}: has {len(widths)} widths for {len(points)} points; write the file again")
         curves.point["width"] = widths * np.float32(source.space.meters_per_unit)
     return curves
+
+
+def add_own_attributes(curves: Curves, prim: Usd.Prim, where: str, skipped: tuple[str, ...] = ()) -> None:
+    """Adds the attributes of Ringlet's curves on a prim, but those whose primvar begins with one of ``skipped``.
+
+    Raises UserError for a wrong number of values.
+    """
+    for primvar in UsdGeom.PrimvarsAPI(prim).GetPrimvarsWithAuthoredValues():
+        name = primvar.GetPrimvarName()
+        if name not in (f"{OWN}id", *COMMON) and not name.startswith(skipped):
+            _add_own(curves, primvar, original_name(primvar.GetAttr(), name.removeprefix(OWN)), where)
 
 
 def define_curves(
@@ -162,7 +171,7 @@ def define_curves(
             if len(values) != expected:
                 raise UserError(f"{path}: {name} has {len(values)} values; must have {expected}, being {interpolation}")
             if interpolation == "uniform" or name != "width":  # the width of points is in ``widths``
-                _set_attribute(prim, name, interpolation, values)
+                set_attribute(prim, name, interpolation, values)
     fits = np.abs(curves.ids).max(initial=0) < 2**31
     set_primvar(prim, "groom_id", "uniform", (curves.ids if fits else np.arange(len(curves))).astype(np.int32))
     for name, half in zip(ID_HALVES, (curves.ids >> 32, curves.ids & 0xFFFFFFFF), strict=True):
@@ -172,7 +181,7 @@ def define_curves(
     return defined
 
 
-def _set_attribute(prim: Usd.Prim, name: str, interpolation: str, values: NDArray) -> None:
+def set_attribute(prim: Usd.Prim, name: str, interpolation: str, values: NDArray) -> None:
     """Writes an attribute of curves as a primvar whose name USD accepts."""
     valid = f"primvars:{name}"
     if Sdf.Path.IsValidNamespacedIdentifier(valid) and UsdGeom.Primvar.IsValidPrimvarName(valid):

@@ -177,33 +177,38 @@ def read_groom(path: Path | str, variant: str | None = None, *, bound: bool = Tr
 
     Raises UserError for a file that is no groom, an unknown variant, and a head that is missing or has changed.
     """
-    path = Path(path)
     with reading(path) as source:
-        root = groom_prim(source)
+        groom_prim(source)
         if variant is not None:
             _select(source, variant)
-        scalp_file, scalp_prim = scalp_source(source)
-        scalp = read_usd_mesh(scalp_file, scalp_prim, source.cage)
-        return Groom(
-            guides=_curves(source, GUIDES, scalp if bound else None),
-            locks=_curves(source, LOCKS, scalp if bound else None),
-            scalp=scalp,
-            scalp_file=scalp_file,
-            scalp_prim=scalp_prim,
-            region=_get(root, "region"),
-            edge=_get(root, "edge"),
-            hidden=list(_get(root, "hidden") or []),
-            cage=source.cage,
-            space=source.space,
-            hairs=parse_json(source, _get(root, "hairs") or "{}", "ringlet:hairs"),
-            color=_settings(source, root, "color"),
-            fiber=_settings(source, root, "fiber"),
-            grooms=_grooms(source, root),
-            recipe=_get(root, "recipe"),
-            variant=root.GetVariantSets().GetVariantSet(VARIANTS).GetVariantSelection() or None,
-            accessories=[accessory for _, accessory in read_accessories(source)],
-            offsets=offsets_at(prim, source.where(prim)) if (prim := root.GetChild(OFFSETS_NAME)) else None,
-        )
+        return groom_at(source, bound=bound)
+
+
+def groom_at(source: Source, *, bound: bool = True) -> Groom:
+    """The groom of an open stage; ``bound`` and errors as for ``read_groom``."""
+    root = groom_prim(source)
+    scalp_file, scalp_prim = scalp_source(source)
+    scalp = read_usd_mesh(scalp_file, scalp_prim, source.cage)
+    return Groom(
+        guides=_curves(source, GUIDES, scalp if bound else None),
+        locks=_curves(source, LOCKS, scalp if bound else None),
+        scalp=scalp,
+        scalp_file=scalp_file,
+        scalp_prim=scalp_prim,
+        region=_get(root, "region"),
+        edge=_get(root, "edge"),
+        hidden=list(_get(root, "hidden") or []),
+        cage=source.cage,
+        space=source.space,
+        hairs=parse_json(source, _get(root, "hairs") or "{}", "ringlet:hairs"),
+        color=_settings(source, root, "color"),
+        fiber=_settings(source, root, "fiber"),
+        grooms=_grooms(source, root),
+        recipe=_get(root, "recipe"),
+        variant=root.GetVariantSets().GetVariantSet(VARIANTS).GetVariantSelection() or None,
+        accessories=[accessory for _, accessory in read_accessories(source)],
+        offsets=offsets_at(prim, source.where(prim)) if (prim := root.GetChild(OFFSETS_NAME)) else None,
+    )
 
 
 def read_accessories(source: Source) -> list[tuple[Usd.Prim, Accessory]]:

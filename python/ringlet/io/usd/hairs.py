@@ -7,12 +7,13 @@ Also reads the bodies and hairs of a stage for pictures.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pxr import Usd, UsdGeom
+from pxr import Sdf, Usd, UsdGeom
 
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.errors import UserError
@@ -30,16 +31,16 @@ from ringlet.io.usd.curves import (
     set_rest,
     set_roots,
 )
-from ringlet.io.usd.groom import GROOM
 from ringlet.io.usd.material import bind_hair_material
 from ringlet.io.usd.mesh import Body, mesh_at
+from ringlet.io.usd.on_demand import HAIRS, OnDemand, on_demand_prims
 from ringlet.io.usd.pose import rest_time
 from ringlet.io.usd.stage import Source, prims, reading
 from ringlet.io.usd.stream import StreamWriter
 from ringlet.io.usd.surfaces import shown_surfaces
 from ringlet.io.usd.values import Types, set_primvar
 
-HAIRS = f"{GROOM}/hairs"
+LOD = "LOD"  # variant set of /groom/hairs, with the variants LOD0, LOD1, … from the finest on
 COLOR = (0.06, 0.035, 0.02)  # dark brown, for viewports
 LOCK_INDEX = "lock"  # curve attribute: row of a hair's lock
 
@@ -52,28 +53,57 @@ class HairWriter(StreamWriter):
     curves:     hairs at rest with their attributes; ``width`` is the diameter [m], ``lock`` the row of a hair's lock
     groom_path: groom or cache under the layer
     velocities: writes them too, in units per second, which doubles the size of the file
+    coarser:    hairs of further levels of detail; with any, each level is a variant of ``/groom/hairs``
     """
 
     def __init__(
-        self, path: Path | str, groom: Groom, curves: Curves, groom_path: Path | str, velocities: bool = False
+        self,
+        path: Path | str,
+        groom: Groom,
+        curves: Curves,
+        groom_path: Path | str,
+        velocities: bool = False,
+        coarser: Sequence[Curves] = (),
     ) -> None:
         super().__init__(path, groom_path, groom.space, groom.variant)
-        self._groom, self._hairs, self.moving = groom, curves, velocities
-        self._has_rest = False
+        self._groom, self._levels, self.moving = groom, [curves, *coarser], velocities
+        self._has_rest: set[int] = set()
 
     def __enter__(self) -> Self:
-        stage, groom = self.begin(), self._groom
-        if not groom.grooms:
-            self._prims = [(self._define(stage, HAIRS, self._hairs), self._hairs, slice(None))]
-            return self
-        UsdGeom.Scope.Define(stage, HAIRS)
-        self._prims = []
-        for row, name in enumerate(groom.grooms):
-            chosen = np.flatnonzero(self._hairs.curve[GROOM_ROW] == row)
-            hairs, offsets = self._hairs.take(chosen), self._hairs.offsets
-            rows = slice(int(offsets[chosen[0]]), int(offsets[chosen[-1] + 1]))
-            self._prims.append((self._define(stage, f"{HAIRS}/{name}", hairs), hairs, rows))
+        stages = [self.begin()]
+        if len(self._levels) > 1:
+            choice = self._stage.OverridePrim(HAIRS).GetVariantSets().AddVariantSet(LOD)
+            names = [f"{LOD}{level}" for level in range(len(self._levels))]
+            for name in names:
+                choice.AddVariant(name)
+            choice.SetVariantSelection(names[0])
+            stages = [self._selecting(name) for name in names]
+        # Prims are valid while their stage is.
+        self._stages, each = stages, zip(stages, self._levels, strict=True)
+        self._prims = [self._define_level(stage, hairs) for stage, hairs in each]
         return self
+
+    def _selecting(self, level: str) -> Usd.Stage:
+        """A stage of the layer in which a level of detail is selected, and written to."""
+        stage = Usd.Stage.Open(self.layer, Sdf.Layer.CreateAnonymous())
+        stage.SetEditTarget(stage.GetSessionLayer())
+        choice = stage.GetPrimAtPath(HAIRS).GetVariantSets().GetVariantSet(LOD)
+        choice.SetVariantSelection(level)
+        stage.SetEditTarget(choice.GetVariantEditTarget(self.layer))
+        return stage
+
+    def _define_level(self, stage: Usd.Stage, hairs: Curves) -> list[tuple[UsdGeom.BasisCurves, Curves, slice]]:
+        """Defines the prims of one level: each with its hairs, and their rows among the points of the level."""
+        if not self._groom.grooms:
+            return [(self._define(stage, HAIRS, hairs), hairs, slice(None))]
+        UsdGeom.Scope.Define(stage, HAIRS)
+        defined = []
+        for row, name in enumerate(self._groom.grooms):
+            chosen = np.flatnonzero(hairs.curve[GROOM_ROW] == row)
+            own, offsets = hairs.take(chosen), hairs.offsets
+            rows = slice(int(offsets[chosen[0]]), int(offsets[chosen[-1] + 1]))
+            defined.append((self._define(stage, f"{HAIRS}/{name}", own), own, rows))
+        return defined
 
     def _define(self, stage: Usd.Stage, path: str, hairs: Curves) -> UsdGeom.BasisCurves:
         """Defines curves with the primvars that other programs need."""
@@ -87,24 +117,24 @@ class HairWriter(StreamWriter):
                 set_primvar(prim, name, "uniform", hairs.curve[LOCK_INDEX].astype(np.int32))
         if "color" in hairs.point:
             set_primvar(prim, "groom_color", "vertex", hairs.point["color"].astype(np.float32), Types.Color3fArray)
-        bind_hair_material(curves, hairs)
+        bind_hair_material(prim, hairs, self._stage)
         return curves
 
-    def add(self, frame: float | None, points: NDArray, *, around: NDArray | None = None) -> None:
-        """Adds a frame, or the rest pose for None.
+    def add(self, frame: float | None, points: NDArray, *, around: NDArray | None = None, level: int = 0) -> None:
+        """Adds a frame of a level of detail, or the rest pose for None.
 
         points: positions [m], shape (n, 3), preferably float32
         around: points of the head [m], shape (k, 3); by default the roots
 
         Raises UserError for positions that are not finite, far from the head, or not as many as the curves have.
         """
-        for prim, hairs, rows in self._prims:
-            if not self._has_rest:
+        for prim, hairs, rows in self._prims[level]:
+            if level not in self._has_rest:
                 rest = points[rows] if frame is None else hairs.points
                 set_rest(prim, self.put(prim, None, rest, hairs, self._groom.scalp.points))
             if frame is not None:
                 self.put(prim, frame, points[rows], hairs, around)
-        self._has_rest = True
+        self._has_rest.add(level)
 
 
 def read_hairs(path: Path | str, frame: float | None = None) -> Curves:
@@ -146,8 +176,11 @@ def read_hair_frames(path: Path | str) -> NDArray[np.float64]:
 
 
 def _frames(source: Source) -> NDArray[np.float64]:
-    points = (UsdGeom.PointBased(prim).GetPointsAttr() for prim in _hair_prims(source))
-    samples = [time for attribute in points for time in attribute.GetTimeSamples()]
+    if made := on_demand_prims(source):
+        samples = UsdGeom.Boundable(made[0]).GetExtentAttr().GetTimeSamples()
+    else:
+        points = (UsdGeom.PointBased(prim).GetPointsAttr() for prim in _hair_prims(source))
+        samples = [time for attribute in points for time in attribute.GetTimeSamples()]
     return whole_frames(min(samples), max(samples), str(source.path)) if samples else np.empty(0)
 
 
@@ -162,6 +195,8 @@ def _hair_prims(source: Source) -> list[Usd.Prim]:
 
 def _hairs(source: Source, frame: float | None) -> Curves | None:
     """Hairs of a stage at a frame, merged into one list of curves."""
+    if on_demand_prims(source):
+        return OnDemand(source).curves(frame).check(str(source.path))
     found = [_hairs_at(source, prim, frame) for prim in _hair_prims(source)]
     if len(found) < 2:
         return found[0] if found else None

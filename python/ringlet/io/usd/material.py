@@ -31,15 +31,16 @@ IOR = 1.55
 CONTEXT = "mtlx"  # render context of MaterialX
 
 
-def bind_hair_material(curves: UsdGeom.BasisCurves, values: Curves) -> UsdShade.Material:
-    """Defines the material of hairs under the root of their prim, and binds it.
+def bind_hair_material(prim: Usd.Prim, values: Curves, stage: Usd.Stage | None = None) -> UsdShade.Material:
+    """Defines the material of hairs under the root of their prim, and binds it to the prim.
 
     values: the hairs with their attributes; those without melanin get the usual colour
+    stage:  where to define it; by default that of the prim, whose edit target may be a variant of the prim alone
     """
-    prim = curves.GetPrim()
-    stage, root = prim.GetStage(), prim.GetPath().GetPrefixes()[0]
-    scope = UsdGeom.Scope.Define(stage, root.AppendChild(SCOPE))
-    material = UsdShade.Material.Define(stage, scope.GetPath().AppendChild(prim.GetName()))
+    root = prim.GetPath().GetPrefixes()[0]
+    scope = UsdGeom.Scope.Define(stage or prim.GetStage(), root.AppendChild(SCOPE))
+    path = scope.GetPath().AppendChild(prim.GetName())
+    material = UsdShade.Material.Define(stage or prim.GetStage(), path)
     material.CreateSurfaceOutput(CONTEXT).ConnectToSource(_hair(material, values))
     material.CreateSurfaceOutput().ConnectToSource(_preview(material))
     UsdShade.MaterialBindingAPI.Apply(prim).Bind(material)

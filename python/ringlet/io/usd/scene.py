@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +24,7 @@ from ringlet.io.usd.groom import GROOM, GUIDES, LOCKS
 from ringlet.io.usd.material import bind_hair_material
 from ringlet.io.usd.mesh import define_mesh, mesh_at
 from ringlet.io.usd.names import identifier
+from ringlet.io.usd.on_demand import OnDemand, on_demand_prims
 from ringlet.io.usd.place import Place
 from ringlet.io.usd.pose import motion_samples, rest_time
 from ringlet.io.usd.stage import Source, layer_files, new_stage, prims, reading, reading_more, writing
@@ -58,7 +60,7 @@ def open_usd_scene(path: Path) -> Iterator[HairScene]:
         surfaces = shown_surfaces(source)
         times = [time for prim in found or surfaces for time in motion_samples(source, prim)]
         frames = whole_frames(min(times), max(times), str(path)) if times else np.empty(0)
-        sets = [_curve_set(source, prim) for prim in found]
+        sets = [*_made_on_demand(source), *(_curve_set(source, prim) for prim in found)]
         record(path, *layer_files(source.stage))  # the caller may write while the stage is open
         yield HairScene(
             sorted(sets, key=lambda one: one.guide),
@@ -84,6 +86,17 @@ def _curve_set(source: Source, prim: Usd.Prim) -> CurveSet:
         return points
 
     return CurveSet(name, curves, guide, motion if motion_samples(source, prim) else None)
+
+
+def _made_on_demand(source: Source) -> Iterator[CurveSet]:
+    """The hairs of a stage that are made on demand, a set for each groom; those of a frame are made once for all."""
+    if not on_demand_prims(source):
+        return
+    made = OnDemand(source)
+    rest, points = made.points(None), lru_cache(maxsize=1)(made.points)
+    for name, curves, rows in made.sets():
+        motion = (lambda frame, rows=rows: points(frame)[rows]) if len(made.frames) else None
+        yield CurveSet(name, replace(curves, points=rest[rows]).check(f"{source.path} {name}"), motion=motion)
 
 
 def _body(source: Source, prim: Usd.Prim, frames: NDArray) -> tuple[Mesh, Clip | None]:
@@ -127,7 +140,7 @@ def _define_set(stage: Usd.Stage, path: str, one: CurveSet, frames: NDArray, spa
         values = values.astype(np.int32 if values.dtype.kind in "iu" else np.float32)
         set_primvar(prim, name, interpolation, values, PLAIN[name])
     if not one.guide:
-        bind_hair_material(defined, plain)
+        bind_hair_material(prim, plain)
     place = Place(prim, space, file, plain)
     set_rest(defined, set_points(defined, curves.points, place, DEFAULT))
     velocities = Velocities(defined, stage.GetTimeCodesPerSecond())

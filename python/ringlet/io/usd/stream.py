@@ -35,8 +35,8 @@ class StreamWriter:
         self.path, self.under, self.space, self.variant = Path(path), Path(under), space, variant
         self._frames: list[float] = []
         self._unsaved = 0
-        self._place_of_prim: dict[Sdf.Path, Place] = {}
-        self._velocities_of_prim: dict[Sdf.Path, Velocities] = {}
+        self._place_of_prim: dict[Usd.Prim, Place] = {}
+        self._velocities_of_prim: dict[Usd.Prim, Velocities] = {}
 
     def begin(self) -> Usd.Stage:
         """Opens a temporary file beside ``path`` and returns its stage over the groom.
@@ -74,15 +74,15 @@ class StreamWriter:
         curves: those of the prim
         around: points of the head [m], shape (k, 3); by default the roots
         """
-        place = self._place_of_prim.get(prim.GetPath())
+        place = self._place_of_prim.get(prim.GetPrim())
         if place is None:
-            place = self._place_of_prim[prim.GetPath()] = Place(prim.GetPrim(), self.space, self.path, curves)
+            place = self._place_of_prim[prim.GetPrim()] = Place(prim.GetPrim(), self.space, self.path, curves)
         time = Usd.TimeCode.Default() if frame is None else Usd.TimeCode(float(frame))
         value = set_points(prim, points, place, time, around)
         if frame is not None and self.moving:
-            velocities = self._velocities_of_prim.get(prim.GetPath())
+            velocities = self._velocities_of_prim.get(prim.GetPrim())
             if velocities is None:
-                velocities = self._velocities_of_prim[prim.GetPath()] = Velocities(prim, self.space.fps)
+                velocities = self._velocities_of_prim[prim.GetPrim()] = Velocities(prim, self.space.fps)
             velocities.add(float(frame), np.array(value))
         self.record(frame, points.size * 4)
         return value
