@@ -164,8 +164,8 @@ def render(style: Style, names: list[str], folder: Path, engine: str, fraction: 
             add_camera(hair, name, camera)
             still = folder / "still.png"
             width, height = camera.size
-            size = {"width": width, "height": height, "samples": camera.samples}
-            ringlet.write_still(hair, still, **size, camera=f"/{name}", engine=engine)
+            samples, at = camera.samples, f"/{name}"
+            ringlet.write_still(hair, still, width=width, height=height, samples=samples, camera=at, engine=engine)
             mark = digest(style.recipe, head, camera)
             Image.open(still).convert("RGB").save(picture_path(style, name), quality=84, comment=mark.encode())
             print(picture_path(style, name).relative_to(ROOT), flush=True)

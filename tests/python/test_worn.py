@@ -112,6 +112,8 @@ def test_a_bead_has_its_radius_on_a_core_and_strands_in_it_keep_theirs():
     contact = ShotContact(radius=5e-4)
     one = Cores.of(core).groom.locks
     assert one.point[WORN_MASS].sum() == pytest.approx(core.locks.point[WORN_MASS].sum(), rel=1e-5)
-    widest = contact_radii(contact, one).reshape(len(one), -1).max(axis=1)
+    of_core, of_strands = (contact_radii(contact, locks) for locks in (one, strands_of_braid.locks))
+    assert of_core is not None and of_strands is not None
+    widest = of_core.reshape(len(one), -1).max(axis=1)
     assert widest == pytest.approx(np.full(len(one), 0.005), abs=2e-4)
-    assert contact_radii(contact, strands_of_braid.locks).max() < 0.004
+    assert of_strands.max() < 0.004

@@ -252,7 +252,7 @@ def turn_points(locks: Curves) -> NDArray[np.int32]:
         points = locks.points[locks.offsets[chosen, None] + np.arange(n)]
         bend = np.diff(points, 2, axis=1).astype(np.float32)
         bend = (bend - bend.mean(axis=1, keepdims=True)) * np.hanning(n)[1:-1, None].astype(np.float32)
-        spectrum = rfft(bend, n, axis=1)
+        spectrum: NDArray[np.complex64] = np.asarray(rfft(bend, n, axis=1), np.complex64)
         power = np.einsum("lfx,lfx->lf", spectrum.real, spectrum.real)
         power += np.einsum("lfx,lfx->lf", spectrum.imag, spectrum.imag)
         peak = np.where(power >= 0.25 * power.max(axis=1, keepdims=True), power, 0.0)
