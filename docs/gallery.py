@@ -149,7 +149,7 @@ def picture_path(style: Style, name: str) -> Path:
     return FOLDER / f"{style.name}_{name}.jpg"
 
 
-def render(style: Style, names: list[str], folder: Path, fraction: float = 1.0) -> None:
+def render(style: Style, names: list[str], folder: Path, engine: str, fraction: float = 1.0) -> None:
     """Renders pictures of a style, head by head; ``fraction`` of the hairs, each wider."""
     for head in HEADS:
         chosen = [name for name in names if style.shots[name][0] == head]
@@ -164,7 +164,8 @@ def render(style: Style, names: list[str], folder: Path, fraction: float = 1.0) 
             add_camera(hair, name, camera)
             still = folder / "still.png"
             width, height = camera.size
-            ringlet.write_still(hair, still, width=width, height=height, samples=camera.samples, camera=f"/{name}")
+            samples, at = camera.samples, f"/{name}"
+            ringlet.write_still(hair, still, width=width, height=height, samples=samples, camera=at, engine=engine)
             mark = digest(style.recipe, head, camera)
             Image.open(still).convert("RGB").save(picture_path(style, name), quality=84, comment=mark.encode())
             print(picture_path(style, name).relative_to(ROOT), flush=True)
@@ -249,6 +250,7 @@ def main() -> None:
     parser.add_argument("styles", nargs="*", help="names of styles; all by default")
     parser.add_argument("--again", action="store_true", help="render pictures that are up to date, too")
     parser.add_argument("--first", action="store_true", help="only pictures on the head that a style is shown on first")
+    parser.add_argument("--engine", default="scalar", help="of the renderer: scalar, or llvm, which is faster")
     parser.add_argument("--page", action="store_true", help="write docs/gallery.md, and render nothing")
     chosen = parser.parse_args()
     styles = read_styles()
@@ -256,7 +258,7 @@ def main() -> None:
     wanted = [] if chosen.page else [style for style in styles if not chosen.styles or style.name in chosen.styles]
     with tempfile.TemporaryDirectory() as folder:
         for style, names in due(wanted, chosen.again, chosen.first):
-            render(style, names, Path(folder))
+            render(style, names, Path(folder), chosen.engine)
     write_page(styles)  # with the pictures that are there now
 
 

@@ -14,6 +14,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from ringlet.data.quantities import Varied
+from ringlet.groom.hair_settings import HairSettings
 from ringlet.groom.operators import Grown, Locks
 
 from ringlet import Mesh
@@ -36,7 +37,9 @@ def bundles(recipe: Recipe, numbers: tuple[int, ...]) -> list[list[NDArray[np.fl
         "shape": [],
         "scalp": recipe.scalp.model_copy(update={"region": None}),
         "curl": recipe.curl.model_copy(update={"keep": "silhouette", "phase_lock": None}),
-        "hairs": recipe.hairs.model_copy(update={"density": None, "per_lock": Varied(value=50), "points": 900}),
+        "hairs": recipe.hairs.model_copy(
+            update={"density": None, "spread": HairSettings().spread, "per_lock": Varied(value=50), "points": 900}
+        ),
     }
     hairs = make_hairs(make_groom(recipe.model_copy(update=upright), floor)).curves
     locks = [np.flatnonzero(hairs.curve["lock"] == number).tolist() for number in numbers]

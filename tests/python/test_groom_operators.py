@@ -5,6 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from ringlet.data.random import Random
+from ringlet.groom.groups import leaders
 from ringlet.groom.operators import Context
 from ringlet.groom.scalp import Scalp
 from scipy.signal import find_peaks
@@ -321,6 +322,18 @@ def test_a_plain_amount_clumps_every_lock_as_much():
     assert np.abs(varied.points - plain.points).max() > 1e-3
     tips = plain.points[plain.offsets[1:] - 1]
     assert len(np.unique(tips.round(9), axis=0)) < 0.7 * len(tips)  # all of a clump end at its centre
+
+
+def test_locks_follow_no_leader_that_leans_to_the_other_side_of_a_parting():
+    line = np.linspace(0.0, 0.1, 13)[:, None]
+    roots = np.random.default_rng(1).uniform(-0.05, 0.05, (300, 3)) * [1.0, 0.0, 1.0]
+    shapes = roots[:, None] + line * np.where(roots[:, :1] < 0.0, -1.0, 1.0)[:, None] * [1.0, 0.0, 0.0]
+    across = []
+    for apart in (180.0, 60.0):
+        leader = leaders(shapes, 0.03, apart, Scalp(sheet(), None), 1)
+        across.append(int((roots[:, 0] * roots[leader, 0] < 0.0).sum()))
+        assert len(np.unique(leader)) < 100
+    assert across[0] > 5 and across[1] == 0
 
 
 def test_locks_part_at_a_plane_and_at_a_drawn_line():

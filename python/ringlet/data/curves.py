@@ -59,9 +59,14 @@ class Curves:
     def lengths(self) -> NDArray[np.floating]:
         """Arc length of every curve [m], shape (count,)."""
         along = np.zeros(len(self.points))
-        along[1:] = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
+        along[1:] = self._steps()
         along[self.offsets[:-1]] = 0.0  # the jump from one curve to the next is no edge
         return np.add.reduceat(along, self.offsets[:-1]) if len(self) else np.empty(0)
+
+    def _steps(self) -> NDArray[np.floating]:
+        """Distance of every point from the one before, also from one curve to the next [m], shape (n - 1,)."""
+        steps = self.points[1:] - self.points[:-1]
+        return np.sqrt(np.einsum("nk,nk->n", steps, steps))
 
     def take(self, indices: NDArray) -> Curves:
         """The chosen curves (indices or a mask), with their attributes."""
@@ -191,7 +196,7 @@ class Curves:
             raise UserError(
                 f"{what}: curve {self.ids[short[0]]} has {self.counts[short[0]]} points; must have at least 3"
             )
-        edges = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
+        edges = self._steps()
         edges[self.offsets[1:-1] - 1] = np.inf  # the jump from one curve to the next is no edge
         if (flat := np.flatnonzero(~(edges >= LEAST_EDGE))).size:
             curve = int(np.searchsorted(self.offsets, flat[0], side="right") - 1)

@@ -24,6 +24,8 @@ CORE = "core"  # of a lock: 1 where the locks of its section are simulated as on
 HAIR_SHARE = "hair_share"  # of a lock: part of its hairs that grow, where there is a mask
 STRAND_PROFILE = "strand_profile"  # of a lock: factors on that radius at even steps from root to tip, shape (count, k)
 TIED = "tied"  # of a point: 1 where a band ties the locks of a section, 0 elsewhere
+WORN_MASS = "worn_mass"  # of a point: mass of what it carries, such as a part of a bead [kg]
+WORN_RADIUS = "worn_radius"  # of a point: distance from it to the outside of what it carries [m]
 
 GROOM = "groom"  # of a lock, a guide or a hair: the row of its groom among those of the head, where there are several
 

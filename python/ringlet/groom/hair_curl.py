@@ -8,6 +8,7 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
+from scipy.fft import rfft
 
 from ringlet.data.curves import Curves
 from ringlet.data.errors import Fix, UserError
@@ -17,6 +18,7 @@ from ringlet.groom.values import Values
 
 MOST_FAMILIES = 64
 LEAST_POINTS = 6  # of a hair, per turn of its own coil
+TINY = float(np.finfo(np.float32).tiny)
 FEWEST_TURNS = 1.5  # of a lock below which it has no coil
 
 
@@ -248,10 +250,12 @@ def turn_points(locks: Curves) -> NDArray[np.int32]:
             continue
         chosen = np.flatnonzero(locks.counts == n)
         points = locks.points[locks.offsets[chosen, None] + np.arange(n)]
-        bend = np.diff(points, 2, axis=1)
-        bend = (bend - bend.mean(axis=1, keepdims=True)) * np.hanning(n)[1:-1, None]
-        power = np.sum(np.abs(np.fft.rfft(bend, n, axis=1)) ** 2, axis=2)
+        bend = np.diff(points, 2, axis=1).astype(np.float32)
+        bend = (bend - bend.mean(axis=1, keepdims=True)) * np.hanning(n)[1:-1, None].astype(np.float32)
+        spectrum: NDArray[np.complex64] = np.asarray(rfft(bend, n, axis=1), np.complex64)
+        power = np.einsum("lfx,lfx->lf", spectrum.real, spectrum.real)
+        power += np.einsum("lfx,lfx->lf", spectrum.imag, spectrum.imag)
         peak = np.where(power >= 0.25 * power.max(axis=1, keepdims=True), power, 0.0)
-        turns = np.sum(peak * np.arange(power.shape[1]), axis=1) / np.maximum(peak.sum(axis=1), 1e-300)
+        turns = np.sum(peak * np.arange(power.shape[1]), axis=1) / np.maximum(peak.sum(axis=1), TINY)
         result[chosen] = np.where(turns >= FEWEST_TURNS, np.round(n / np.maximum(turns, 1.0)), 0.0)
     return result

@@ -36,7 +36,7 @@ from ringlet.groom.operators.tied import TO_TIE
 from ringlet.groom.recipe import Recipe
 from ringlet.groom.scalp import Scalp
 from ringlet.groom.sculpt import Sculpted
-from ringlet.groom.worn import Worn, accessories
+from ringlet.groom.worn import Worn, accessories, loaded
 
 Progress = Callable[[str, int, int], None]
 
@@ -147,7 +147,7 @@ def make_groom(
                 progress(name, 1, 1)
         locks = _with_textures_of_hairs(nailed(curves, recipe.nail, scalp, recipe.seed), recipe.hairs, scalp)
         locks = colored(locks, recipe.color, recipe.fiber, scalp)
-        locks = _with_mask_of_hairs(locks, recipe, scalp)
+        locks = loaded(worn, _with_mask_of_hairs(locks, recipe, scalp))
     except UserError as error:
         raise UserError(f"{where}: {error}", error.fixes) from error
     groom = Groom(

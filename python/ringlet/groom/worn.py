@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ringlet.data.accessory import Accessory, carried
 from ringlet.data.curves import Curves
+from ringlet.data.groom import WORN_MASS, WORN_RADIUS
 from ringlet.data.mesh import Mesh
 from ringlet.groom.operators.operator import UP, arc_lengths, at_lengths, unit
 
@@ -24,18 +25,22 @@ class Worn:
     ids:    of the locks that carry it, shape (k,)
     parts:  of the length of each, from root (0) to tip (1), where it carries the mesh, shape (k,)
     places: positions there [m], shape (k, 3)
+    radii:  distances from these to the outside of the mesh [m], shape (k,); 0: in contact it is as thin as the locks
+    mass:   [kg]
     """
 
     mesh: Mesh
     ids: NDArray[np.int64]
     parts: NDArray[np.float64]
     places: NDArray[np.float64]
+    radii: NDArray[np.float64]
+    mass: float = 0.0
 
     @classmethod
     def around(cls, mesh: Mesh, curves: Curves, rows: NDArray[np.integer], parts: NDArray[np.floating]) -> Worn:
         """A mesh that locks carry at some parts of their length, each at all of them."""
         ids, each = np.repeat(curves.ids[rows], len(parts)), np.tile(np.asarray(parts, np.float64), len(rows))
-        return cls(mesh, ids, each, _places(curves, ids, each)[0])
+        return cls(mesh, ids, each, _places(curves, ids, each)[0], np.zeros(len(ids)))
 
 
 def accessories(worn: Iterable[Worn], locks: Curves) -> list[Accessory]:
@@ -46,6 +51,19 @@ def accessories(worn: Iterable[Worn], locks: Curves) -> list[Accessory]:
         points = carried(one.mesh.points, one.places, places)
         made.append(Accessory(replace(one.mesh, points=points), np.unique(vertices)))
     return made
+
+
+def loaded(worn: Iterable[Worn], locks: Curves) -> Curves:
+    """The locks with the masses and radii of what they wear, lumped at their nearest points: ``WORN_MASS`` and
+    ``WORN_RADIUS`` where there are any."""
+    mass, radius = np.zeros(len(locks.points), np.float32), np.zeros(len(locks.points), np.float32)
+    for one in worn:
+        vertices = _places(locks, one.ids, one.parts)[1]
+        np.add.at(mass, vertices, one.mass / len(vertices))
+        np.maximum.at(radius, vertices, one.radii.astype(np.float32))
+    if not (mass.any() or radius.any()):
+        return locks
+    return replace(locks, point={**locks.point, WORN_MASS: mass, WORN_RADIUS: radius})
 
 
 def revolved(name: str, middle: NDArray, axis: NDArray, profile: NDArray, color: tuple[float, float, float]) -> Mesh:
@@ -63,6 +81,12 @@ def revolved(name: str, middle: NDArray, axis: NDArray, profile: NDArray, color:
     corner = [(p * count + q).ravel() for p, q in ((i, j), (i1, j), (i1, j1), (i, j1))]
     triangles = np.concatenate([np.stack([corner[0], corner[k], corner[k + 1]], axis=1) for k in (1, 2)])
     return Mesh(name, points.reshape(-1, 3), triangles.astype(np.int32), color=color)
+
+
+def volume(mesh: Mesh) -> float:
+    """Volume inside a closed mesh [m³]."""
+    a, b, c = np.asarray(mesh.points, np.float64)[mesh.triangles].transpose(1, 0, 2)
+    return float(np.sum(a * np.cross(b, c))) / 6.0
 
 
 def ring(radius: float, width: float, height: float, roundness: float = 1.0) -> NDArray[np.float64]:

@@ -9,10 +9,12 @@ from numpy.typing import NDArray
 
 from ringlet import _core
 from ringlet.data.curves import Curves, offsets_from_counts
-from ringlet.data.groom import CORE, SECTION, STRAND_RADIUS, Groom
+from ringlet.data.groom import CORE, SECTION, STRAND_RADIUS, WORN_MASS, WORN_RADIUS, Groom
 from ringlet.sim.roots import Roots
 
 Array = NDArray[np.float64]
+
+ADD_UP = "borne", WORN_MASS  # attributes of points: the sum over its strands is that of a core
 
 
 @dataclass(frozen=True)
@@ -54,7 +56,7 @@ class Cores:
         return np.bincount(self.simulated, minlength=len(self.groom.locks))
 
     def reduced(self, curves: Curves) -> Curves:
-        """Of curves for all locks those that are simulated; forces at points add up in a core."""
+        """Of curves for all locks those that are simulated; forces and masses at points add up in a core."""
         if not self.count:
             return curves
         alone = curves.take(np.flatnonzero(self.of_core < 0))
@@ -64,12 +66,18 @@ class Cores:
             strands = [curves.take(rows[k : k + 1]) for k in range(len(rows))]
             middle = np.mean([np.asarray(strand.points, np.float64) for strand in strands], axis=0)
             of_curve, of_point = dict(strands[0].curve), dict(strands[0].point)
+            away = np.array([np.linalg.norm(s.points - middle, axis=1) for s in strands], np.float32)
             if STRAND_RADIUS in of_curve:
-                away = np.max([np.linalg.norm(s.points - middle, axis=1) for s in strands], axis=0)
-                of_curve[STRAND_RADIUS] = of_curve[STRAND_RADIUS] + np.float32(np.median(away))
+                of_curve[STRAND_RADIUS] = of_curve[STRAND_RADIUS] + np.median(away.max(axis=0))
             for name in of_point:
                 all_of_them = np.array([strand.point[name] for strand in strands])
-                of_point[name] = all_of_them.sum(axis=0) if name == "borne" else all_of_them.max(axis=0)
+                of_point[name] = all_of_them.sum(axis=0) if name in ADD_UP else all_of_them.max(axis=0)
+            if WORN_RADIUS in of_point:
+                outer = [
+                    np.where(s.point[WORN_RADIUS] > 0.0, s.point[WORN_RADIUS], -out) + out
+                    for s, out in zip(strands, away, strict=True)
+                ]
+                of_point[WORN_RADIUS] = np.max(outer, axis=0)
             parts.append(Curves(middle, strands[0].offsets, strands[0].ids, of_curve, of_point))
         return _joined(parts)
 

@@ -29,6 +29,7 @@ from ringlet.sim.start import scene_at_start
 from ringlet.sim.statistics import StepReports, frame_statistics
 from ringlet.sim.strands import Strands
 from ringlet.sim.variation import material_factors
+from ringlet.sim.worn import worn_factors
 
 
 def make_strands(
@@ -45,6 +46,9 @@ def make_strands(
     """
     factors = {**material_factors(shot, groom)}
     for name, factor in (of_cores or {}).items():
+        factors[name] = factors.get(name, 1.0) * factor
+    of_worn = worn_factors(groom.locks, shot.strands, factors.get("radius", np.ones(len(groom.locks.points))))
+    for name, factor in of_worn.items():
         factors[name] = factors.get(name, 1.0) * factor
     if stiffened is not None:
         factors["bend"] = factors.get("bend", 1.0) * np.repeat(stiffened, groom.locks.counts)

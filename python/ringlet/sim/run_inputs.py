@@ -41,7 +41,7 @@ def run_inputs(shot: Shot, groom: Groom, read: Reads, frames: tuple[int, int] | 
         "Ringlet": version("ringlet"),
         "the first frame": first,
         "settings": _plain(shot.model_dump(mode="json", exclude=_PLACES)),
-        "groom": dict(_digests(replace(groom, accessories=[]), "")),  # locks carry these, and do not feel them
+        "groom": dict(_digests(replace(groom, accessories=[]), "")),  # locks have their mass and radius
         "files": [list(one) for one in read.contents()],
     }
 

@@ -217,6 +217,7 @@ def hairs_message(side: str, hairs: AnyHairs, scalp: Mesh) -> bytes:
     count, points = len(hairs.curves), int(hairs.curves.counts[0])
     order = spread_order(layout["first"])
     widths = hairs.curves.point["width"].reshape(count, points)
+    widest = widths.max(axis=1)
     unblended = {"other": np.zeros(count), "share": np.zeros(count)}
     blends = {name: layout[name] if len(layout[name]) else zeros for name, zeros in unblended.items()}
     return pack(
@@ -228,16 +229,18 @@ def hairs_message(side: str, hairs: AnyHairs, scalp: Mesh) -> bytes:
         **{name: layout[name][order] for name in ("offset", "tip", "join", "flat", "taper", "frizz", "root")},
         **{name: values[order] for name, values in blends.items()},
         **{name: layout[name] for name in ("profile", "hold", "pace", "blend")},
-        width=widths.max(axis=1)[order],
-        thinning=np.concatenate([_thinning(widths[group == k]) for k in range(int(group[-1]) + 1)]),
+        width=widest[order],
+        thinning=np.concatenate(
+            [_thinning(widths[of], widest[of]) for of in (group == k for k in range(int(group[-1]) + 1))]
+        ),
         window=layout["window"],
         **NO_CURL | {name: values if name in RAMPS else values[order] for name, values in layout["curl"].items()},
     )
 
 
-def _thinning(widths: NDArray[np.floating]) -> NDArray[np.floating]:
+def _thinning(widths: NDArray[np.floating], widest: NDArray[np.floating]) -> NDArray[np.floating]:
     """Mean width along hairs, relative to the widest point of each, shape (points,)."""
-    thinning = (widths / np.maximum(widths.max(axis=1, keepdims=True), 1e-12)).mean(axis=0)
+    thinning = (1.0 / np.maximum(widest, 1e-12)) @ widths
     return thinning / thinning.max()
 
 

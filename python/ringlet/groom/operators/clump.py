@@ -7,19 +7,20 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
-from scipy.spatial import KDTree
 
 from ringlet.data.curves import Curves
 from ringlet.data.quantities import Quantity, Ramped
+from ringlet.groom.groups import Apart, leaders
 from ringlet.groom.operators.operator import Context
 from ringlet.groom.operators.shape import Shape
 
 
 class Clump(Shape):
     """Pulls neighbouring locks towards a clump centre: ``p' = p + amount · ramp(u) · (centre(u) - p)``. The centres are
-    the locks nearest to samples of the scalp at spacing ``size``. Further levels make smaller clumps within the larger
-    ones: the spacing shrinks by ``finer`` a level, and the amount is the same. An amount that is a plain number varies
-    from root to tip, not from lock to lock."""
+    the locks nearest to samples of the scalp at spacing ``size``; a lock goes to the nearest that leans less than
+    ``apart`` from it. Further levels make smaller clumps within the larger ones: the spacing shrinks by ``finer`` a
+    level, and the amount is the same. An amount that is a plain number varies from root to tip, not from lock to
+    lock."""
 
     op: Literal["clump"] = "clump"
     size: Annotated[float, Quantity("m", 1e-3, 1.0)] = Field(default=0.02, description="distance of the clumps")
@@ -31,6 +32,7 @@ class Clump(Shape):
     finer: Annotated[float, Quantity("", 0.1, 0.9)] = Field(
         default=0.5, description="distance of the clumps of a level, as a part of that of the level before"
     )
+    apart: Apart = 60.0
 
     @classmethod
     def defaults(cls, data: dict[str, Any]) -> dict[str, Any]:
@@ -45,15 +47,7 @@ class Clump(Shape):
         amount = context.values(self, "amount", curves)[:, None]
         amount = np.minimum(amount * self.amount.along(np.linspace(0.0, 1.0, points.shape[1])), 1.0)[:, :, None]
         for level in range(self.levels):
-            centre = self._centres(points[:, 0], self.size * self.finer**level, context)
+            size = self.size * self.finer**level
+            centre = leaders(points, size, self.apart, context.scalp, context.seed + 1)
             points = points + amount * (points[centre] - points)
         return points
-
-    def _centres(self, roots: NDArray, size: float, context: Context) -> NDArray[np.integer]:
-        """Row of each lock's clump centre, shape (count,)."""
-        scalp = context.scalp
-        _, triangle, barycentric = scalp.sample(scalp.count_for_spacing(size), context.seed + 1)
-        _, leaders = KDTree(roots).query(scalp.positions(triangle, barycentric))
-        leaders = np.unique(leaders)
-        _, nearest = KDTree(roots[leaders]).query(roots)
-        return leaders[nearest]

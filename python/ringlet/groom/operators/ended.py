@@ -17,7 +17,7 @@ from ringlet.data.quantities import Quantity, Varied
 from ringlet.groom.color import Color
 from ringlet.groom.operators.operator import Context, arc_lengths, grid, unit
 from ringlet.groom.operators.sectioned import Sectioned
-from ringlet.groom.worn import Worn, revolved, ring
+from ringlet.groom.worn import Worn, revolved, ring, volume
 
 HOLE = 0.5  # width of a bead's hole, relative to its own
 PINCH = 0.8  # factor on the width of a braid under a band
@@ -54,6 +54,10 @@ class Ended(Sectioned):
     beads: Annotated[Varied, Quantity("", 1.0, 20.0)] = Field(
         default=Varied(value=1.0), description="number of beads of a section"
     )
+    density: Annotated[Varied, Quantity("kg/m³", 0.0, 2e4)] = Field(
+        default=Varied(value=1000.0),
+        description="of bands and beads: wood 700, plastic and rubber 1000, glass 2500, brass 8500",
+    )
     colors: list[Color] = Field(
         default=[], description="colours of bands and beads, in sRGB: `#rrggbb`; each has one of them by chance"
     )
@@ -83,7 +87,7 @@ class Ended(Sectioned):
         if self.end not in ("tied", "bead") or TIED not in after.point:
             return []
         leaders, rows = self.leaders(before, self.weights(before, context) > 0.0)
-        value = {k: context.values(self, k, leaders) for k in ("band", "bead", "bead_length", "beads")}
+        value = {k: context.values(self, k, leaders) for k in ("band", "bead", "bead_length", "beads", "density")}
         tied = after.point[TIED].reshape(len(after), -1) > 0.5
         made: list[Worn] = []
         for k, of in enumerate(rows):
@@ -92,14 +96,16 @@ class Ended(Sectioned):
             held, name = Held.of(after, of, tied[of[0]]), f"{context.purpose} {leaders.ids[k]}"
             if self.end == "tied":
                 profile = ring(held.radius, value["band"][k], max(value["band"][k], held.length))
-                made.append(held.worn(revolved(name, held.middle, held.axis, profile, self._color(name, context))))
+                band = revolved(name, held.middle, held.axis, profile, self._color(name, context))
+                made.append(held.worn(band, held.radius + value["band"][k], value["density"][k]))
                 continue
             bead, count = value["bead"][k], round(value["beads"][k])
             profile = ring(0.5 * HOLE * bead, 0.5 * (1.0 - HOLE) * bead, value["bead_length"][k], BEAD_ROUNDNESS)
             for number in range(count):
                 place = held.middle + (number - 0.5 * (count - 1)) * value["bead_length"][k] * held.axis
                 one = f"{name} {number}"
-                made.append(held.worn(revolved(one, place, held.axis, profile, self._color(one, context))))
+                solid = revolved(one, place, held.axis, profile, self._color(one, context))
+                made.append(held.worn(solid, 0.5 * bead, value["density"][k]))
         return made
 
     def _color(self, name: str, context: Context) -> tuple[float, float, float]:
@@ -119,6 +125,7 @@ class Held:
     places: positions there [m], shape (k, 3)
     middle: of these [m]; axis: unit vector along the strands
     radius: around them, and the length over which they are held [m]
+    away:   of the places from the axis [m], shape (k,)
     """
 
     ids: NDArray[np.int64]
@@ -128,6 +135,7 @@ class Held:
     axis: NDArray[np.float64]
     radius: float
     length: float
+    away: NDArray[np.float64]
 
     @classmethod
     def of(cls, curves: Curves, rows: NDArray[np.integer], held: NDArray[np.bool_]) -> Held:
@@ -146,11 +154,14 @@ class Held:
             axis=axis,
             radius=float((away + _radii(curves, rows, held)).max()),
             length=float(np.linalg.norm(line[-1] - line[0])),
+            away=away.ravel(),
         )
 
-    def worn(self, mesh: Mesh) -> Worn:
-        """A mesh that the strands carry."""
-        return Worn(mesh, self.ids, self.parts, self.places)
+    def worn(self, mesh: Mesh, radius: float, density: float) -> Worn:
+        """A closed mesh that the strands carry, of an outer radius [m] and a density [kg/m³]."""
+        return Worn(
+            mesh, self.ids, self.parts, self.places, np.maximum(radius - self.away, 0.0), density * volume(mesh)
+        )
 
 
 def _radii(curves: Curves, rows: NDArray[np.integer], held: NDArray[np.bool_]) -> NDArray[np.float64]:

@@ -77,7 +77,7 @@ class Grown(Guides):
     lift: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
         default=Varied(value=0.8), description="1 stands up, 0 lies flat"
     )
-    droop: Annotated[Varied, Quantity("", 0.0, 10.0)] = Field(
+    droop: Annotated[Varied, Quantity("", 0.0, 30.0)] = Field(
         default=Varied(value=0.4), description="how much the tip hangs down"
     )
     whorl: Annotated[Direction | None, BeforeValidator(lambda value: None if value is False else value)] = Field(

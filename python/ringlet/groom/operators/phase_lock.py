@@ -7,10 +7,10 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
-from scipy.spatial import KDTree
 
 from ringlet.data.curves import Curves
 from ringlet.data.quantities import Quantity, Section, Varied
+from ringlet.groom.groups import Apart, leaders
 from ringlet.groom.operators.operator import Context
 
 
@@ -28,16 +28,14 @@ class PhaseLock(Section):
     cohesion: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
         default=Varied(value=0.3), description="how far their middle lines are drawn together as well"
     )
+    apart: Apart = 60.0
 
     def values(self, curves: Curves, context: Context) -> dict[str, NDArray]:
         """Leader and blend settings of each lock, as arguments of the core; each of shape (count,)."""
-        scalp = context.scalp
-        _, triangle, barycentric = scalp.sample(scalp.count_for_spacing(self.size), context.seed + 2)
-        _, leaders = KDTree(curves.roots).query(scalp.positions(triangle, barycentric))
-        leaders = np.unique(leaders)
-        _, nearest = KDTree(curves.roots[leaders]).query(curves.roots)
+        shapes = curves.points.reshape(len(curves), -1, 3)
+        leader = leaders(shapes, self.size, self.apart, context.scalp, context.seed + 2)
         return {
-            "leader": leaders[nearest].astype(np.int32),
+            "leader": leader.astype(np.int32),
             "join": np.minimum(context.values(self, "amount", curves, "phase_lock."), 1.0),
             "join_over": context.values(self, "length", curves, "phase_lock."),
             "cohesion": np.minimum(context.values(self, "cohesion", curves, "phase_lock."), 1.0),
