@@ -8,6 +8,7 @@ import { Model } from "./model";
 import { Bar } from "./panel/bar";
 import { BrushTool } from "./panel/brush";
 import { DrawTool } from "./panel/draw";
+import { ClearArea } from "./panel/clear_area";
 import { CompareBar } from "./panel/compare";
 import { bindKey, plainKey } from "./panel/keys";
 import { Lens } from "./panel/lens";
@@ -90,12 +91,6 @@ class App {
     const stack = new Stack(this.model, () => presets.show(true));
     const left = h("div", { class: "left" }, stack.element, presets.element, this.lock.element, this.brush.element, this.paint.element, this.draw.element);
     const settings = new Settings(this.model).element;
-    this.viewer.covered = () => [
-      left.getBoundingClientRect().right,
-      settings.hidden ? 0 : innerWidth - settings.getBoundingClientRect().left,
-      46,
-      98,
-    ];
     const viewbar = new Viewbar(this.model, this.viewer, this.brush, name);
     this.render = new RenderPanel(this.model, this.viewer, viewbar, name);
     picture.append(this.render.element);
@@ -107,8 +102,10 @@ class App {
     picture.append(references.element, this.notes.marks);
     const lens = new Lens(this.model, this.viewer, this.look, name);
     viewbar.element.append(lens.button, snapshots.button, this.tray.button);
+    const bar = new Bar(this.model, () => this.setTheme(), people.element, () => this.endComparison()).element;
+    const sheets = new Sheets(this.model).element;
     root.append(
-      new Bar(this.model, () => this.setTheme(), people.element, () => this.endComparison()).element,
+      bar,
       left,
       settings,
       viewbar.element,
@@ -119,8 +116,14 @@ class App {
       this.status.element,
       this.notices.element,
       this.problems.element,
-      new Sheets(this.model).element,
+      sheets,
     );
+    const below = [viewbar.element, this.timeline.element, this.status.element, sheets];
+    const panels = [...left.children, settings] as HTMLElement[];
+    new ClearArea([bar, this.problems.element], panels, below, (clear) => {
+      this.viewer.setClear(clear);
+      this.model.tell("clear");
+    });
     const preferred = matchMedia("(prefers-color-scheme: light)").matches ? "light" : "dark";
     this.setTheme((localStorage.getItem("ringlet-theme") as "dark" | "light" | null) ?? preferred);
     this.model.link = new Link(

@@ -159,7 +159,7 @@ export class BrushTool {
     const toEye = camera.position.clone().sub(middle).normalize();
     const counts = (x: number, y: number, z: number) =>
       (x - middle.x) * toEye.x + (y - middle.y) * toEye.y + (z - middle.z) * toEye.z > -0.02;
-    const reach = this.metres * pixelsPerMetre(controls.target, camera, this.viewer.size.height);
+    const reach = this.metres * pixelsPerMetre(controls.target, camera, this.viewer.clear.height);
     const found = pick(guides.points, guides.offsets, camera, this.viewer.size, at, Math.max(reach, 8), counts);
     return found && new Vector3().fromArray(guides.points, 3 * (guides.offsets[found.lock] + found.point));
   }
@@ -227,7 +227,7 @@ export class BrushTool {
   /** Puts the ring where the brush is. */
   private draw(at: { x: number; y: number }, near: Vector3 | null): void {
     const place = near ?? this.viewer.controls.target;
-    const pixels = this.metres * pixelsPerMetre(place, this.viewer.camera, this.viewer.size.height);
+    const pixels = this.metres * pixelsPerMetre(place, this.viewer.camera, this.viewer.clear.height);
     this.ring.toggleAttribute("hidden", false);
     this.ring.classList.toggle("idle", !near);
     Object.assign(this.ring.style, {

@@ -198,7 +198,7 @@ export class PaintTool {
   /** Puts the ring where the brush is. */
   private draw(event: MouseEvent, place: Vector3 | null): void {
     const { x, y } = this.viewer.at(event);
-    const pixels = this.metres * pixelsPerMetre(place ?? this.viewer.controls.target, this.viewer.camera, this.viewer.size.height);
+    const pixels = this.metres * pixelsPerMetre(place ?? this.viewer.controls.target, this.viewer.camera, this.viewer.clear.height);
     this.ring.toggleAttribute("hidden", false);
     this.ring.classList.toggle("idle", !place);
     Object.assign(this.ring.style, { left: `${x - pixels}px`, top: `${y - pixels}px`, width: `${2 * pixels}px`, height: `${2 * pixels}px` });

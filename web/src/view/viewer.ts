@@ -4,13 +4,14 @@ import { type BufferGeometry, PerspectiveCamera, Scene, Vector2, Vector3, WebGLR
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import type { Body as BodyMessage, Colors, Hairs, Locks, Rig, Shared } from "../protocol";
 import { Body } from "./body";
+import type { Box, Size } from "./box";
 import { Difference } from "./difference";
 import { GuideLines } from "./guides";
 import { type Colour, Hair } from "./hair";
 import { Film } from "./film";
 import { fieldOfView, FOCAL_LENGTH, type Portrait, portrait, SENSOR } from "./framing";
 import { Lights } from "./lights";
-import { type Cell, type Covered, Looks, type Side } from "./looks";
+import { type Cell, Looks, type Side } from "./looks";
 import { Clock, Pace, type Portion } from "./pace";
 import { PaintedMap } from "./painted";
 
@@ -41,8 +42,6 @@ export class Viewer {
   onLook: () => void = () => {};
   onDraw: (statistics: DrawStatistics) => void = () => {};
 
-  covered: () => Covered = () => [0, 0, 0, 0];
-
   /** Whether there is no graphics card: then pictures are plainer, so that they come at all. */
   readonly software: boolean;
 
@@ -55,8 +54,11 @@ export class Viewer {
   private readonly scene = new Scene();
   private readonly casters = new Scene();
   private framed = false;
-  /** Whether a picture is drawn that is kept: no panels cover it. */
-  private keeping = false;
+  /** Azimuth and elevation from which the subject is framed, until the camera moves [degrees]. */
+  private framedFrom: [number, number] | null = null;
+  /** Whether the picture is composed for all of the canvas, as one that is kept: no panels cover it. */
+  composed = false;
+  private left: Box | null = null;
   private hairShown = true;
   private wanted = false;
   private moved = 0;
@@ -210,7 +212,7 @@ export class Viewer {
   }
 
   /** Puts the camera before the subject so that all of it is in the picture. */
-  frame(azimuth = 34, elevation = 7, picture = this.size): void {
+  frame(azimuth = 34, elevation = 7, picture: Size = this.clear): void {
     if (this.hair.a.box.isEmpty()) return;
     this.framed = true;
     const [a, e] = [(azimuth * Math.PI) / 180, (elevation * Math.PI) / 180];
@@ -220,6 +222,7 @@ export class Viewer {
     this.camera.position.copy(target).addScaledVector(backward, (distance * this.focalLength) / FOCAL_LENGTH);
     this.controls.update();
     this.onLook();
+    this.framedFrom = [azimuth, elevation];
     this.invalidate();
   }
 
@@ -251,6 +254,7 @@ export class Viewer {
   /** Puts the camera: its place and its target, six numbers, and the focal length of its lens [mm]. */
   lookFrom(camera: number[], focalLength = this.focalLength): void {
     this.framed = true;
+    this.framedFrom = null;
     this.camera.fov = fieldOfView(focalLength);
     this.camera.position.fromArray(camera);
     this.controls.target.fromArray(camera, 3);
@@ -272,8 +276,14 @@ export class Viewer {
     this.onLook = moved;
   }
 
+  /** Keeps the camera where it is when panels open and close. */
+  stay(): void {
+    this.framedFrom = null;
+  }
+
   /** Something moves: speed counts more than detail for a moment. */
   move(): void {
+    this.framedFrom = null;
     this.onLook();
     this.moved = performance.now();
     this.invalidate();
@@ -302,9 +312,26 @@ export class Viewer {
   }
 
   /** Size of the picture [pixels]. */
-  get size(): { width: number; height: number } {
+  get size(): Size {
     const { clientWidth, clientHeight } = this.element;
     return { width: clientWidth, height: clientHeight };
+  }
+
+  /** What panels leave clear of the picture. */
+  get clear(): Box {
+    return this.composed || !this.left ? { x: 0, y: 0, ...this.canvas } : this.left;
+  }
+
+  private get canvas(): Size {
+    const { x, y } = this.renderer.getSize(new Vector2());
+    return { width: x, height: y };
+  }
+
+  /** Panels leave another part clear; a subject that was framed is framed again. */
+  setClear(box: Box): void {
+    this.left = box;
+    if (this.framedFrom) this.frame(...this.framedFrom);
+    this.invalidate();
   }
 
   /** Where a pointer is in the picture [pixels]. */
@@ -319,9 +346,10 @@ export class Viewer {
     const ratio = renderer.getPixelRatio();
     renderer.setPixelRatio(1);
     renderer.setSize(width, height, false);
-    this.keeping = true;
+    const { composed } = this;
+    this.composed = true;
     this.drawNow();
-    this.keeping = false;
+    this.composed = composed;
     const kept = document.createElement("canvas");
     [kept.width, kept.height] = [width, height];
     const context = kept.getContext("2d")!;
@@ -371,7 +399,7 @@ export class Viewer {
     this.clock.end((took) => {
       this.drawing = false;
       this.pace.took(took, portion, moving);
-      this.onDraw({ drawMs: took, shown: Math.round(this.hair.a.count * Math.min(1, portion.fraction * portion.drawings)) });
+      this.onDraw({ drawMs: took, shown: Math.round(this.hair.a.count * Math.min(1, portion.fraction * this.film.drawings)) });
       if (this.wanted) requestAnimationFrame(() => this.draw());
       else if (this.turntable) this.invalidate();
       else if (!moving && this.lacking) this.request();
@@ -381,9 +409,9 @@ export class Viewer {
   /** The fraction of the hairs that is about as wide as a pixel when it stands for all. */
   private resolved(): number {
     const hair = this.hair.a;
-    const { y } = this.renderer.getDrawingBufferSize(new Vector2());
+    const { clear } = this.cells[0];
     const away = this.camera.position.distanceTo(this.controls.target);
-    const pixel = (2 * away * Math.tan((0.5 * this.camera.fov * Math.PI) / 180)) / Math.max(y, 1);
+    const pixel = (2 * away * Math.tan((0.5 * this.camera.fov * Math.PI) / 180)) / (clear.height * this.renderer.getPixelRatio());
     this.pace.resolved = Math.min(1, Math.max(hair.width / (THINNEST * pixel), 1 / Math.max(hair.count, 1)));
     return this.pace.resolved;
   }
@@ -403,8 +431,7 @@ export class Viewer {
 
   /** Which looks are drawn, and where. */
   private get cells(): Cell[] {
-    const { width, height } = this.renderer.getSize(new Vector2());
-    return this.looks.cells(width, height, this.keeping ? [0, 0, 0, 0] : this.covered());
+    return this.looks.cells(this.canvas, this.clear);
   }
 
   /** Adds drawings to the film and develops it. */
@@ -415,6 +442,9 @@ export class Viewer {
     const pictures = looks.difference ? [cells.slice(0, 1), cells.slice(1)] : [cells];
     if (film.width !== buffer.x || film.height !== buffer.y) film.drawings = 0;
     const begun = film.drawings;
+    const { clear } = this;
+    const ratio = renderer.getPixelRatio();
+    const seen = { x: ratio * clear.x, y: ratio * clear.y, width: ratio * clear.width, height: ratio * clear.height };
     pictures.forEach((some, k) => {
       const one = k ? this.second : film;
       one.drawings = begun;
@@ -424,16 +454,16 @@ export class Viewer {
         this.expose(some, fraction, one.drawings, moving ? 2 : 1);
         one.expose(renderer);
       }
-      one.show(renderer, looks.difference ? this.difference.target(k, renderer) : null);
+      one.show(renderer, seen, looks.difference ? this.difference.target(k, renderer) : null);
     });
     if (looks.difference) this.difference.draw(renderer);
     else this.drawOverlays(cells);
-    if (looks.split) this.aim(alone(this.size), 1); // what is over the picture goes by this camera
+    this.aim({ canvas: { x: 0, y: 0, ...this.size }, clear: this.clear, zoom: 1 }); // what is over the picture goes by this camera
   }
 
   /** Draws looks once: a part of the hairs, another one in each drawing, and the pixels moved by a part of one. */
   private expose(cells: Cell[], fraction: number, number: number, stride: number): void {
-    const { renderer, camera, looks } = this;
+    const { renderer, camera } = this;
     const size = renderer.getSize(new Vector2());
     // The sequence R2 of Roberts 2018 over a filter as wide as the path tracer's
     const ratio = renderer.getPixelRatio();
@@ -442,7 +472,7 @@ export class Viewer {
     renderer.setScissorTest(cells.length > 1);
     for (const cell of cells) {
       const hair = this.hair[cell.side];
-      this.aim(cell, looks.zoom(cell), x, y);
+      this.aim(cell, x, y);
       this.window(cell, size);
       for (const body of this.bodies.values()) body.turnTo(cell.side);
       hair.setDetail(fraction, stride, Math.round(number * fraction * hair.count) % Math.max(hair.count, 1));
@@ -458,11 +488,11 @@ export class Viewer {
   }
 
   private drawOverlays(cells: Cell[]): void {
-    const { renderer, camera, looks } = this;
+    const { renderer, camera } = this;
     const cell = cells.find(({ side }) => side === "a");
     if (!cell || !(this.guides.shown || this.painted.shown)) return;
     const size = renderer.getSize(new Vector2());
-    this.aim(cell, looks.zoom(cell));
+    this.aim(cell);
     this.window(cell, size);
     for (const body of this.bodies.values()) body.turnTo("a");
     renderer.clearDepth();
@@ -473,21 +503,18 @@ export class Viewer {
   }
 
   /** Aims the camera at the middle of what is clear of a cell, moved by a part of a pixel. */
-  private aim({ box, clear }: Cell, zoom: number, x = 0, y = 0): void {
+  private aim({ canvas, clear, zoom }: Pick<Cell, "canvas" | "clear" | "zoom">, x = 0, y = 0): void {
     const { camera } = this;
-    const seen = this.looks.split ? box : clear;
     camera.zoom = zoom;
     camera.aspect = clear.width / Math.max(clear.height, 1);
-    camera.setViewOffset(clear.width, clear.height, seen.x - clear.x + x, seen.y - clear.y + y, seen.width, seen.height);
+    camera.setViewOffset(clear.width, clear.height, canvas.x - clear.x + x, canvas.y - clear.y + y, canvas.width, canvas.height);
   }
 
-  /** Sets the part of the canvas that a cell fills: a look next to others has a view of its own, else all share one. */
-  private window({ box }: Cell, size: Vector2): void {
-    const { renderer, looks } = this;
-    const { x, y, width, height } = box;
-    if (looks.split) renderer.setViewport(x, size.y - y - height, width, height);
-    else renderer.setViewport(0, 0, size.x, size.y);
-    renderer.setScissor(x, size.y - y - height, width, height);
+  /** Sets the part of the canvas that a cell fills. */
+  private window({ box, canvas }: Cell, size: Vector2): void {
+    const { renderer } = this;
+    renderer.setViewport(canvas.x, size.y - canvas.y - canvas.height, canvas.width, canvas.height);
+    renderer.setScissor(box.x, size.y - box.y - box.height, box.width, box.height);
   }
 
   private resize(): void {
@@ -531,12 +558,6 @@ export class Viewer {
     this.move();
     return true;
   }
-}
-
-/** The cell of a look that has all of the picture. */
-function alone({ width, height }: { width: number; height: number }): Cell {
-  const all = { x: 0, y: 0, width, height };
-  return { side: "a", box: all, clear: all };
 }
 
 /** Some of the points, three numbers each. */
