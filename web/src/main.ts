@@ -1,5 +1,6 @@
 // The page: connects what the server says with the picture and the panels.
 
+import "./base.css";
 import "./style.css";
 import { Vector3 } from "three";
 import { h } from "./dom";
@@ -63,16 +64,18 @@ class App {
     this.lock = new LockTool(this.model, this.viewer);
     this.timeline = new TimelineBar(this.model, this.viewer, (frame) => this.status.simulated(frame.statistics));
     this.brush = new BrushTool(this.model, this.viewer);
-    this.brush.changed.push((on) => on && this.lock.choose(-1));
     this.paint = new PaintTool(this.model, this.viewer, this.brush.ring);
-    this.paint.changed.push((on) => on && (this.brush.show(false), this.lock.choose(-1)));
-    this.brush.changed.push((on) => on && this.paint.show(false));
     this.model.paint = (place, label) => this.paint.paint(place, label);
     this.draw = new DrawTool(this.model, this.viewer);
     this.model.draw = (place, label) => this.draw.draw(place, label);
-    this.draw.changed.push((on) => on && (this.brush.show(false), this.paint.show(false), this.lock.choose(-1)));
-    for (const { changed } of [this.brush, this.paint]) changed.push((on) => on && this.draw.show(false));
-    this.lock.busy = () => this.brush.on || this.paint.on || this.draw.on;
+    const tools = [this.brush, this.paint, this.draw];
+    for (const tool of tools)
+      tool.changed.push((on) => {
+        if (!on) return;
+        for (const other of tools) if (other !== tool) other.show(false);
+        this.lock.choose(-1);
+      });
+    this.lock.busy = () => tools.some(({ on }) => on);
     this.pointer = new PresenterPointer(this.model, this.viewer);
     picture.append(this.lock.handles, this.brush.ring, this.pointer.element);
     this.viewer.onPaint = () => {
@@ -233,14 +236,14 @@ class App {
         if (model.overlay) this.timeline.overlay();
         break;
       case "body":
-        viewer.setBody(message);
+        viewer.stage.setBody(message);
         break;
       case "hairs":
-        viewer.setHairs(message);
+        viewer.stage.setHairs(message);
         this.timeline.displaced(message.side);
         break;
       case "colors":
-        viewer.setColors(message);
+        viewer.stage.setColors(message);
         break;
       case "locks":
         viewer.setLocks(message);

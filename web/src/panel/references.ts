@@ -10,7 +10,7 @@ import "./references.css";
 import type { Notices } from "./status";
 import type { Tray, TrayTab } from "./tray";
 
-const MODES = { off: "hidden", beside: "beside", over: "over" };
+const MODES = { off: "hidden", next: "next to it", over: "over" };
 const LARGEST = 2048; // pixels on the long side of a picture that is kept
 const PATCH = 5; // pixels of a picture whose mean the eyedropper takes, on each side
 
