@@ -111,6 +111,17 @@ def test_a_shot_is_accessible(opened: Any):
     assert checked.found == {}
 
 
+def test_people_are_accessible(opened: Any, serve: Any):
+    server = serve("small.recipe.toml")
+    _, review = (opened(server, viewport={"width": 900, "height": 500}) for _ in range(2))
+    checked = Checked(review)
+    checked.check("a follower that is asked for a name")
+    review.page.get_by_role("button", name="Stay a guest").click()
+    review.page.get_by_role("button", name="2 people are here").click()
+    checked.check("people")
+    assert checked.found == {}
+
+
 @pytest.mark.parametrize("width, height", [(390, 844), (820, 1180)])
 def test_small_screens_are_accessible(opened: Any, width: int, height: int):
     review: Review = opened(viewport={"width": width, "height": height}, has_touch=True, is_mobile=True)
