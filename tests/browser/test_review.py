@@ -267,7 +267,7 @@ def test_two_looks_are_shown_side_by_side(opened: Any):
     begin, end, middle = clear["x"], clear["x"] + clear["width"], clear["x"] + clear["width"] // 2
     assert begin > 200 and width - end > 200 and clear["width"] > 280
     alpha = "ringlet.viewer.film.transparent(ringlet.viewer.renderer).data.filter((_, k) => k % 4 == 3)"
-    seen = (np.array(review.get(f"Array.from({alpha})")).reshape(picture.shape[:2]) > 200).any(axis=0)  # heads
+    seen = (np.array(review.get(f"Array.from({alpha})")).reshape(picture.shape[:2]) > 8).any(axis=0)
     for left, right in ((begin, middle), (middle, end)):
         head = left + np.flatnonzero(seen[left:right])
         assert abs((head[0] + head[-1]) / 2 - (left + right) / 2) < 10

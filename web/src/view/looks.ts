@@ -9,6 +9,7 @@ export type Side = Hairs["side"];
 export type Arrangement = "split" | "wipe" | "flip" | "difference";
 
 const SUBJECT = 0.8; // width of a subject, as a fraction of the height of the picture that frames it
+const WORTH = 1.2; // factor by which looks are larger where one more row is worth it
 export const MOST_LOOKS = 4;
 
 /** Where a look is drawn. */
@@ -83,16 +84,16 @@ export class Looks {
     ];
   }
 
-  /** Rows and columns in which looks are largest; those at the border of the canvas reach it. */
+  /** Looks next to one another, in more rows where they are much larger so; those at the border of the canvas reach it. */
   private grid(all: Box, clear: Box): Cell[] {
     const count = this.order.length;
     const plans = Array.from({ length: count }, (_, k) => {
-      const columns = k + 1;
+      const columns = count - k;
       const rows = Math.ceil(count / columns);
       const [width, height] = [clear.width / columns, clear.height / rows];
       return { columns, rows, width, height, size: fits({ width, height }) };
     });
-    const plan = plans.reduce((best, one) => (one.size > best.size ? one : best));
+    const plan = plans.reduce((best, one) => (one.size > WORTH * best.size ? one : best));
     const subject = Math.min(SUBJECT, clear.width / clear.height);
     return this.order.map((side, k) => {
       const [column, row] = [k % plan.columns, Math.floor(k / plan.columns)];
