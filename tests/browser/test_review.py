@@ -281,23 +281,24 @@ def test_regions_and_overlays_are_chosen_from_lists(opened: Any, folder: Path):
 
 def test_two_looks_are_shown_side_by_side(opened: Any):
     review: Review = opened()
-    beside = review.page.get_by_label("Show another look beside this one")
-    beside.select_option("now")
+    other = review.page.get_by_label("Compare with another look")
+    other.select_option("now")
     review.until("ringlet.viewer.compared && ringlet.viewer.hair.b.table")
     picture = review.picture()
     width = picture.shape[1]
-    begin, end = (int(pixels) for pixels in review.get("ringlet.viewer.covered().slice(0, 2)"))  # width of the panels
-    middle = (begin + width - end) // 2
-    assert begin > 200 and end > 200 and width - begin - end > 280
-    lit = (picture.max(axis=2) > 180).any(axis=0)
-    heads = [begin + np.flatnonzero(lit[begin:middle]), middle + np.flatnonzero(lit[middle : width - end])]
-    places = [heads[0].mean() - begin, heads[1].mean() - middle]
-    assert abs(places[0] - places[1]) < 4 and abs(places[0] - (middle - begin) / 2) < 25
+    clear = review.get("ringlet.viewer.clear")
+    begin, end, middle = clear["x"], clear["x"] + clear["width"], clear["x"] + clear["width"] // 2
+    assert begin > 200 and width - end > 200 and clear["width"] > 280
+    alpha = "ringlet.viewer.film.transparent(ringlet.viewer.renderer).data.filter((_, k) => k % 4 == 3)"
+    seen = (np.array(review.get(f"Array.from({alpha})")).reshape(picture.shape[:2]) > 8).any(axis=0)
+    for left, right in ((begin, middle), (middle, end)):
+        head = left + np.flatnonzero(seen[left:right])
+        assert abs((head[0] + head[-1]) / 2 - (left + right) / 2) < 10
     review.drag(review.slider("curl.width"), 0.35, 0.95)
     review.until("ringlet.model.documents.recipe.dirty")
     review.settled()
     picture = review.picture()
-    size = min(middle - begin, width - end - middle)
+    size = min(middle - begin, end - middle)
     assert different(picture[:, begin : begin + size], picture[:, middle : middle + size]) > 0.005
     review.page.get_by_role("button", name="End", exact=True).click()
     review.until("!ringlet.viewer.compared")

@@ -40,8 +40,10 @@ def test_a_note_with_arrows_brings_back_its_view_and_is_exported(opened: Any, fo
     stored = tomllib.loads(next((folder / "small.review/notes").glob("*.toml")).read_text())
     assert stored["lock"] == review.get("ringlet.viewer.hair.a.locks.ids[2]") and stored["text"] == "less frizz here"
     tail, tip = np.array(stored["strokes"][0][:2])  # in heights of the picture, from its middle
-    assert tail == pytest.approx([(420 - 640) / 800, (400 - 150) / 800], abs=1e-3)
-    assert tip == pytest.approx([(520 - 640) / 800, (400 - 250) / 800], abs=1e-3)
+    clear = review.get("ringlet.viewer.clear")  # what the camera sees between the panels; the tray is over it
+    middle = np.array([clear["x"] + clear["width"] / 2, clear["y"] + clear["height"] / 2])
+    assert tail == pytest.approx((np.array([420, 150]) - middle) * (1, -1) / clear["height"], abs=1e-3)
+    assert tip == pytest.approx((np.array([520, 250]) - middle) * (1, -1) / clear["height"], abs=1e-3)
     review.get("(ringlet.viewer.orbit(0.8, 0.1), ringlet.viewer.move())")
     review.until("!document.querySelector('.marks polyline')")  # of another view
     page.get_by_role("button", name="Show note 1").click()
@@ -72,8 +74,9 @@ def test_a_reference_is_shown_moved_and_gives_the_hair_its_color(opened: Any, fo
     page.mouse.down()
     page.mouse.move(box["x"] + box["width"] + 60, box["y"] + 60, steps=4)
     page.mouse.up()
-    review.until("Math.abs(ringlet.model.references[0].x + 0.25) < 0.001")
-    assert review.get("ringlet.model.references[0].y") == pytest.approx(-0.05, abs=1e-3)
+    height = review.get("ringlet.viewer.clear.height")
+    review.until(f"Math.abs(ringlet.model.references[0].x + 0.35 - {80 / height}) < 0.001")
+    assert review.get("ringlet.model.references[0].y") == pytest.approx(-40 / height, abs=1e-3)
     page.get_by_label("Where ‘photo.png’ is").select_option("over")
     review.until("document.querySelector('.reference').style.opacity == '0.5'")
     page.get_by_role("button", name="Pick the hair's color").click()
@@ -90,7 +93,7 @@ def test_light_lens_and_bookmarks_are_kept_with_the_recipe_for_other_browsers(op
     server = serve("small.recipe.toml")
     review: Review = opened(server)
     page = review.page
-    size = "ringlet.viewer.focalLength / ringlet.viewer.camera.position.distanceTo(ringlet.viewer.controls.target)"
+    size = "ringlet.viewer.view.focalLength / ringlet.viewer.camera.position.distanceTo(ringlet.viewer.controls.target)"
     before = review.get(size)
     page.get_by_role("button", name="Camera, light and sheet").click()
     page.get_by_label("Focal length").fill("50")
@@ -101,7 +104,7 @@ def test_light_lens_and_bookmarks_are_kept_with_the_recipe_for_other_browsers(op
     review.until("ringlet.model.views['0']?.light_turn == 90 && ringlet.model.views['2']")
     page.close()
     other: Review = opened(server)
-    other.until("Math.abs(ringlet.viewer.focalLength - 50) < 0.1 && ringlet.viewer.lights.turn == 90")
+    other.until("Math.abs(ringlet.viewer.view.focalLength - 50) < 0.1 && ringlet.viewer.stage.lights.turn == 90")
     other.page.get_by_role("button", name="Camera, light and sheet").click()
     assert other.page.get_by_role("button", name="Recall bookmark 2").is_visible()
     assert not other.errors

@@ -139,17 +139,21 @@ def test_a_render_is_shown_in_place_wiped_saved_and_ended_by_a_move(opened: Any,
     review.until("ringlet.render.picture.samples == 4", 600.0)
     assert "Rendered, 4 samples" in review.page.locator(".render-state").inner_text()
     line = review.page.get_by_role("slider", name="Wipe between render and live picture")
-    box = review.page.locator(".render").bounding_box()
-    y, middle = box["y"] + 0.8 * box["height"], box["x"] + box["width"] / 2
-    review.page.mouse.move(line.bounding_box()["x"] + 12, y)
-    review.page.mouse.down()
-    review.page.mouse.move(middle, y, steps=4)
-    review.page.mouse.up()
-    assert abs(int(line.get_attribute("aria-valuenow")) - 50) <= 2
+    part = review.page.locator(".render")
+    for place, (width, height) in enumerate([(1280, 800), (820, 1180), (390, 844), (760, 500)]):
+        review.page.set_viewport_size({"width": width, "height": height})
+        review.get("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+        box, line_box = part.bounding_box(), line.bounding_box()
+        y = box["y"] + 0.8 * box["height"]
+        review.page.mouse.move(line_box["x"] + line_box["width"] / 2, y)
+        review.page.mouse.down()
+        review.page.mouse.move(box["x"] + (0.0, 1.0, 0.0, 0.5)[place] * box["width"], y, steps=4)
+        review.page.mouse.up()
+        assert abs(int(line.get_attribute("aria-valuenow")) - (0, 100, 0, 50)[place]) <= 2
     with review.page.expect_download() as download:
         review.page.get_by_role("button", name="Save PNG").click()
     saved = Image.open(download.value.path())
-    assert saved.size == (review.get("ringlet.viewer.size.width"), review.get("ringlet.viewer.size.height"))
+    assert saved.size == (review.get("ringlet.viewer.clear.width"), review.get("ringlet.viewer.clear.height"))
     review.get("ringlet.viewer.key('ArrowLeft')")
     assert not picture.is_visible() and review.get("ringlet.render.picture") is None
     assert not review.errors

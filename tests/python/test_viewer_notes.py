@@ -56,7 +56,7 @@ def test_a_reference_is_kept_and_placed(folder: Path):
         one.receive("references", references=[])
         one.send(kind="add_reference", name="photo.jpg", picture=picture((200, 150, 90), "JPEG", (40, 30)))
         entry = one.receive("references")["references"][0]
-        assert (entry["name"], entry["mode"]) == ("photo.jpg", "beside")
+        assert (entry["name"], entry["mode"]) == ("photo.jpg", "next")
         data = one.receive("picture", name=f"references/{entry['id']}")["data"].tobytes()
         assert Image.open(io.BytesIO(data)).size == (40, 30)
         one.send(kind="place_reference", id=entry["id"], mode="over", opacity=0.3, x=0.1, y=-0.2, scale=1.5)

@@ -1,5 +1,6 @@
 // The page: connects what the server says with the picture and the panels.
 
+import "./base.css";
 import "./style.css";
 import { Vector3 } from "three";
 import { h } from "./dom";
@@ -8,6 +9,7 @@ import { Model } from "./model";
 import { Bar } from "./panel/bar";
 import { BrushTool } from "./panel/brush";
 import { DrawTool } from "./panel/draw";
+import { ClearArea } from "./panel/clear_area";
 import { CompareBar } from "./panel/compare";
 import { bindKey, plainKey } from "./panel/keys";
 import { Lens } from "./panel/lens";
@@ -62,16 +64,18 @@ class App {
     this.lock = new LockTool(this.model, this.viewer);
     this.timeline = new TimelineBar(this.model, this.viewer, (frame) => this.status.simulated(frame.statistics));
     this.brush = new BrushTool(this.model, this.viewer);
-    this.brush.changed.push((on) => on && this.lock.choose(-1));
     this.paint = new PaintTool(this.model, this.viewer, this.brush.ring);
-    this.paint.changed.push((on) => on && (this.brush.show(false), this.lock.choose(-1)));
-    this.brush.changed.push((on) => on && this.paint.show(false));
     this.model.paint = (place, label) => this.paint.paint(place, label);
     this.draw = new DrawTool(this.model, this.viewer);
     this.model.draw = (place, label) => this.draw.draw(place, label);
-    this.draw.changed.push((on) => on && (this.brush.show(false), this.paint.show(false), this.lock.choose(-1)));
-    for (const { changed } of [this.brush, this.paint]) changed.push((on) => on && this.draw.show(false));
-    this.lock.busy = () => this.brush.on || this.paint.on || this.draw.on;
+    const tools = [this.brush, this.paint, this.draw];
+    for (const tool of tools)
+      tool.changed.push((on) => {
+        if (!on) return;
+        for (const other of tools) if (other !== tool) other.show(false);
+        this.lock.choose(-1);
+      });
+    this.lock.busy = () => tools.some(({ on }) => on);
     this.pointer = new PresenterPointer(this.model, this.viewer);
     picture.append(this.lock.handles, this.brush.ring, this.pointer.element);
     this.viewer.onPaint = () => {
@@ -90,12 +94,6 @@ class App {
     const stack = new Stack(this.model, () => presets.show(true));
     const left = h("div", { class: "left" }, stack.element, presets.element, this.lock.element, this.brush.element, this.paint.element, this.draw.element);
     const settings = new Settings(this.model).element;
-    this.viewer.covered = () => [
-      left.getBoundingClientRect().right,
-      settings.hidden ? 0 : innerWidth - settings.getBoundingClientRect().left,
-      46,
-      98,
-    ];
     const viewbar = new Viewbar(this.model, this.viewer, this.brush, name);
     this.render = new RenderPanel(this.model, this.viewer, viewbar, name);
     picture.append(this.render.element);
@@ -107,8 +105,10 @@ class App {
     picture.append(references.element, this.notes.marks);
     const lens = new Lens(this.model, this.viewer, this.look, name);
     viewbar.element.append(lens.button, snapshots.button, this.tray.button);
+    const bar = new Bar(this.model, () => this.setTheme(), people.element, () => this.endComparison()).element;
+    const sheets = new Sheets(this.model).element;
     root.append(
-      new Bar(this.model, () => this.setTheme(), people.element, () => this.endComparison()).element,
+      bar,
       left,
       settings,
       viewbar.element,
@@ -119,8 +119,14 @@ class App {
       this.status.element,
       this.notices.element,
       this.problems.element,
-      new Sheets(this.model).element,
+      sheets,
     );
+    const below = [viewbar.element, this.timeline.element, this.status.element, sheets];
+    const panels = [...left.children, settings] as HTMLElement[];
+    new ClearArea([bar, this.problems.element], panels, below, (clear) => {
+      this.viewer.setClear(clear);
+      this.model.tell("clear");
+    });
     const preferred = matchMedia("(prefers-color-scheme: light)").matches ? "light" : "dark";
     this.setTheme((localStorage.getItem("ringlet-theme") as "dark" | "light" | null) ?? preferred);
     this.model.link = new Link(
@@ -230,14 +236,14 @@ class App {
         if (model.overlay) this.timeline.overlay();
         break;
       case "body":
-        viewer.setBody(message);
+        viewer.stage.setBody(message);
         break;
       case "hairs":
-        viewer.setHairs(message);
+        viewer.stage.setHairs(message);
         this.timeline.displaced(message.side);
         break;
       case "colors":
-        viewer.setColors(message);
+        viewer.stage.setColors(message);
         break;
       case "locks":
         viewer.setLocks(message);

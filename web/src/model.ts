@@ -54,7 +54,8 @@ type Topic =
   | "notes"
   | "references"
   | "views"
-  | "cameras";
+  | "cameras"
+  | "clear";
 
 export class Model {
   welcome: Welcome | null = null;

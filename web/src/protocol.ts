@@ -118,7 +118,7 @@ export interface Note {
 
 /** Where a reference picture is. */
 export interface Placement {
-  mode: "off" | "beside" | "over";
+  mode: "off" | "next" | "over";
   opacity: number;
   x: number;
   y: number;
@@ -127,7 +127,7 @@ export interface Placement {
 
 /** A reference picture; ``references/ID`` is its ``Picture``. */
 export interface Reference {
-  mode: "off" | "beside" | "over";
+  mode: "off" | "next" | "over";
   opacity: number;
   x: number;
   y: number;
@@ -509,7 +509,7 @@ export interface AddReference {
 /** Shows a reference picture next to the look, over it, or not. */
 export interface PlaceReference {
   kind: "place_reference";
-  mode?: "off" | "beside" | "over";
+  mode?: "off" | "next" | "over";
   opacity?: number;
   x?: number;
   y?: number;

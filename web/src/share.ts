@@ -1,5 +1,6 @@
 // The share page: a look to turn, from the data in the page itself. It talks to nobody.
 
+import "./base.css";
 import "./share.css";
 import { decode } from "./codec";
 import { h, iconButton } from "./dom";
@@ -58,8 +59,8 @@ class SharedLook {
     root.append(this.shelf());
     this.setTheme(view.theme ?? "dark");
     const { colors, rigs } = this.about;
-    this.viewer.setLights(rigs[view.light ?? ""] ?? Object.values(rigs)[0]);
-    this.viewer.setColour(colors[view.color ?? ""] ?? null, colors["dark_brown"]);
+    this.viewer.stage.setLights(rigs[view.light ?? ""] ?? Object.values(rigs)[0]);
+    this.viewer.stage.setColour(colors[view.color ?? ""] ?? null, colors["dark_brown"]);
     this.viewer.controls.addEventListener("start", () => this.setTurning(false));
     addEventListener("keydown", (event) => this.key(event));
     this.unpack().catch((error) => (this.status.textContent = `The look cannot be shown: ${error}`));
@@ -89,9 +90,9 @@ class SharedLook {
 
   private take(data: ArrayBuffer): void {
     const message = decode(data);
-    if (message.kind === "body") this.viewer.setBody(message);
-    else if (message.kind === "hairs") this.viewer.setHairs(message);
-    else if (message.kind === "colors") this.viewer.setColors(message);
+    if (message.kind === "body") this.viewer.stage.setBody(message);
+    else if (message.kind === "hairs") this.viewer.stage.setHairs(message);
+    else if (message.kind === "colors") this.viewer.stage.setColors(message);
     else if (message.kind === "locks") this.viewer.setLocks(message);
   }
 
@@ -100,7 +101,7 @@ class SharedLook {
     const { rigs, view } = this.about;
     for (const [key, { label }] of Object.entries(rigs)) list.append(h("option", { value: key }, label));
     list.value = view.light && rigs[view.light] ? view.light : Object.keys(rigs)[0];
-    list.addEventListener("change", () => this.viewer.setLights(rigs[list.value]));
+    list.addEventListener("change", () => this.viewer.stage.setLights(rigs[list.value]));
     return list;
   }
 

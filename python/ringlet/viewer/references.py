@@ -9,7 +9,7 @@ from ringlet.viewer.protocol import AddReference, Placement, PlaceReference, Ref
 from ringlet.viewer.review_entries import Entries
 from ringlet.viewer.review_folder import FORMATS, ReviewFolder, decode_picture
 
-BESIDE = Placement(mode="beside", x=-0.35, scale=0.45)  # on the left of the look, which stays in sight
+NEXT = Placement(mode="next", x=-0.35, scale=0.45)  # on the left of the look, which stays in sight
 PLACEMENT = tuple(Placement.model_fields)
 
 
@@ -44,7 +44,7 @@ class ReferenceStore(Entries[Stored]):
         data, suffix = decode_picture(message.picture, f"reference: {message.name or 'picture'}")
         id = self.new_id()
         self.folder.write_bytes(self.file(id, suffix), data)
-        return self.add(Stored(name=message.name, suffix=suffix, placement=BESIDE), id)
+        return self.add(Stored(name=message.name, suffix=suffix, placement=NEXT), id)
 
     def place(self, message: PlaceReference) -> None:
         """Shows a picture elsewhere."""

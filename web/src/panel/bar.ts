@@ -18,7 +18,7 @@ export class Bar {
   private readonly save = h("button", { type: "button", class: "primary", title: "Save (Ctrl+S)" }, "Save");
   private readonly as = h("button", { type: "button", class: "quiet" }, "Save as…");
   private readonly open = iconButton("folder", "Open another file (Ctrl+O)", () => openFile(this.model));
-  private readonly beside = h("select", { "aria-label": "Show another look beside this one", class: "beside" });
+  private readonly other = h("select", { "aria-label": "Compare with another look", class: "other-look" });
 
   constructor(
     private readonly model: Model,
@@ -29,14 +29,14 @@ export class Bar {
     this.name.addEventListener("click", () => showChanges(model));
     this.save.addEventListener("click", () => this.saveAll());
     this.as.addEventListener("click", () => saveAs(model, this.file));
-    this.beside.addEventListener("change", () => this.compare());
+    this.other.addEventListener("change", () => this.compare());
     this.element.append(
       h("span", { class: "brand" }, "Ringlet"),
       this.open,
       this.name,
       h("span", { class: "group" }, this.undo, this.redo),
       h("span", { class: "group" }, this.save, this.as),
-      this.beside,
+      this.other,
       h("span", { class: "space" }),
       people,
       iconButton("keys", "Keys (?)", showKeys),
@@ -61,8 +61,8 @@ export class Bar {
   }
 
   private compare(): void {
-    const { value } = this.beside;
-    this.beside.value = "";
+    const { value } = this.other;
+    this.other.value = "";
     if (value === "end") this.endComparison();
     else if (value) compareWith(this.model, value);
   }
@@ -77,15 +77,15 @@ export class Bar {
     this.undo.toggleAttribute("disabled", !role.leads || !open.some((document) => document.undo));
     this.redo.toggleAttribute("disabled", !role.leads || !open.some((document) => document.redo));
     this.save.toggleAttribute("disabled", !role.leads || !dirty);
-    for (const part of [this.undo, this.redo, this.save, this.as, this.beside])
+    for (const part of [this.undo, this.redo, this.save, this.as, this.other])
       part.toggleAttribute("hidden", !open.length);
     this.as.toggleAttribute("disabled", !role.leads);
     this.open.toggleAttribute("disabled", !role.leads);
-    this.beside.replaceChildren(
+    this.other.replaceChildren(
       h("option", { value: "" }, "Compare with …"),
       ...(this.model.others.length ? [h("option", { value: "end" }, "End the comparison")] : []),
       ...choices(this.model),
     );
-    this.beside.toggleAttribute("disabled", !role.leads);
+    this.other.toggleAttribute("disabled", !role.leads);
   }
 }

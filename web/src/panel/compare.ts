@@ -7,6 +7,7 @@ import { type Arrangement, MOST_LOOKS, type Side } from "../view/looks";
 import type { Viewer } from "../view/viewer";
 import "./compare.css";
 import { bindKey } from "./keys";
+import { WipeLine } from "./wipe_line";
 
 const MODES: Record<Arrangement, string> = {
   split: "side by side",
@@ -53,14 +54,8 @@ export class CompareBar {
   private readonly legend = h("p", { class: "compare-legend", hidden: true }, LEGEND);
   private readonly bar: HTMLElement;
   private readonly labels = h("div", { class: "look-labels" });
-  private readonly divider = h("div", {
-    class: "divider",
-    role: "slider",
-    tabindex: 0,
-    "aria-label": "Place of the wipe",
-    "aria-valuemin": 0,
-    "aria-valuemax": 100,
-  });
+  private readonly line = new WipeLine("Place of the wipe", (at) => this.wipe(at));
+  private readonly stretch = h("div", { class: "compare-wipe" }, this.line.element);
 
   constructor(
     private readonly model: Model,
@@ -87,23 +82,10 @@ export class CompareBar {
       this.changes,
       h("button", { type: "button", class: "quiet", onclick: () => this.end() }, "End"),
     );
-    this.element.append(this.divider, this.labels, this.bar, this.legend, this.list);
+    this.element.append(this.stretch, this.labels, this.bar, this.legend, this.list);
     for (const topic of ["compared", "snapshots", "files", "role"] as const) model.on(topic, () => this.update());
-    addEventListener("resize", () => this.update());
+    model.on("clear", () => this.update());
     bindKey({ keys: "Tab", does: "flip between the looks that are compared", on: (event) => this.flips(event), run: () => this.flip() });
-    let held = false;
-    this.divider.addEventListener("pointerdown", (event) => {
-      held = true;
-      this.divider.setPointerCapture(event.pointerId);
-    });
-    this.divider.addEventListener("pointermove", (event) => held && this.wipe(event.clientX / innerWidth));
-    for (const name of ["pointerup", "pointercancel"] as const) this.divider.addEventListener(name, () => (held = false));
-    this.divider.addEventListener("keydown", (event) => {
-      const by = { ArrowLeft: -0.02, ArrowRight: 0.02 }[event.key];
-      if (!by) return;
-      event.preventDefault();
-      this.wipe(this.viewer.looks.wipe + by);
-    });
   }
 
   private flips(event: KeyboardEvent): boolean {
@@ -130,7 +112,7 @@ export class CompareBar {
   }
 
   private wipe(at: number): void {
-    this.viewer.looks.wipe = Math.min(0.97, Math.max(0.03, at));
+    this.viewer.looks.wipe = at;
     this.redraw();
   }
 
@@ -148,7 +130,7 @@ export class CompareBar {
   }
 
   private update(): void {
-    const { model, viewer, divider } = this;
+    const { model, viewer } = this;
     const { looks } = viewer;
     const several = looks.several && model.others.length > 0;
     this.element.hidden = !several;
@@ -161,24 +143,23 @@ export class CompareBar {
     this.mode.value = looks.arrangement;
     this.element.dataset["mode"] = looks.arrangement;
     this.legend.hidden = !looks.difference;
-    divider.hidden = looks.arrangement !== "wipe";
-    divider.style.left = `${100 * looks.wipe}%`;
-    divider.setAttribute("aria-valuenow", String(Math.round(100 * looks.wipe)));
+    this.stretch.hidden = looks.arrangement !== "wipe";
+    this.line.place(looks.wipe);
     this.labels.replaceChildren(...this.placed().map(([side, left, top, shift]) => this.label(side, left, top, shift)));
     this.list.replaceChildren(this.differences());
   }
 
   /** Where the labels of the looks are: their left and top [pixels], and their shift as a part of their width. */
   private placed(): [Side, number, number, number][] {
-    const { looks, element, covered } = this.viewer;
-    const { clientWidth, clientHeight } = element;
+    const { looks, size, clear } = this.viewer;
     const bar = this.element.offsetTop;
     const under = this.bar.offsetTop + this.bar.offsetHeight + 8;
     this.element.style.setProperty("--under", `${under}px`);
-    const cells = looks.cells(clientWidth, clientHeight, covered());
     if (looks.split)
-      return cells.map(({ side, clear }) => [side, clear.x + clear.width / 2, Math.max(under, clear.y + 8 - bar), -50]);
-    const at = looks.arrangement === "wipe" ? looks.wipe * clientWidth : clientWidth / 2;
+      return looks
+        .cells(size, clear)
+        .map(({ side, clear }) => [side, clear.x + clear.width / 2, Math.max(under, clear.y + 8 - bar), -50]);
+    const at = clear.x + clear.width * (looks.arrangement === "wipe" ? looks.wipe : 0.5);
     if (looks.arrangement === "flip") return [[looks.front, at, under, -50]];
     const [first, second] = looks.order;
     return [

@@ -26,10 +26,10 @@ export class Lens {
     private readonly name: () => string,
   ) {
     this.length.input.addEventListener("input", () => {
-      viewer.focalLength = Number(this.length.input.value);
+      viewer.setFocalLength(Number(this.length.input.value));
     });
     this.turn.input.addEventListener("input", () => {
-      viewer.setLightTurn(Number(this.turn.input.value));
+      viewer.stage.setLightTurn(Number(this.turn.input.value));
       model.tell("look");
     });
     this.cameras.addEventListener("change", () => this.take(Number(this.cameras.value)));
@@ -64,8 +64,8 @@ export class Lens {
 
   private update(): void {
     const { model, viewer } = this;
-    this.length.show(viewer.focalLength || FOCAL_LENGTH);
-    this.turn.show(viewer.lights.turn);
+    this.length.show(viewer.view.focalLength || FOCAL_LENGTH);
+    this.turn.show(viewer.stage.lights.turn);
     const options = model.cameras.map(({ name }, k) => h("option", { value: k }, name));
     if (this.cameras.options.length !== options.length + 1) {
       this.cameras.replaceChildren(h("option", { value: "" }, "Camera of the scene …"), ...options);

@@ -84,7 +84,7 @@ export class Look {
   apply(state: View, all: boolean): void {
     this.applying = true;
     this.viewer.lookFrom(state.camera, state.focal_length);
-    this.viewer.setLightTurn(state.light_turn ?? 0);
+    this.viewer.stage.setLightTurn(state.light_turn ?? 0);
     this.bar.choose(state);
     if (all) {
       this.model.choose(state.file, state.place);

@@ -66,7 +66,6 @@ export class Notes {
   /** Places pins and lines where they are seen now. */
   place(): void {
     const { viewer, model } = this;
-    const { size } = viewer;
     const parts: Element[] = [];
     const split = viewer.looks.split;
     if (!split && !this.tray.element.hidden) {
@@ -80,7 +79,7 @@ export class Notes {
       for (const kind of ["under", "over"]) {
         const line = document.createElementNS(SVG, "polyline");
         line.classList.add(kind);
-        line.setAttribute("points", stroke.map((point) => Object.values(toPixels(point as [number, number], size)).join(",")).join(" "));
+        line.setAttribute("points", stroke.map((point) => Object.values(toPixels(point as [number, number], viewer.clear)).join(",")).join(" "));
         parts.push(line);
       }
     const pin = this.draft?.pin && this.whereIs(this.draft.pin);
@@ -168,13 +167,13 @@ export class Notes {
       const at = new Vector3().fromArray(locks.points, 3 * (locks.offsets[found.lock] + found.point)).toArray();
       draft.pin = { at, lock: locks.ids[found.lock], point: found.point };
       this.place();
-    } else this.line = [fromPixels(viewer.at(event), viewer.size)];
+    } else this.line = [fromPixels(viewer.at(event), viewer.clear)];
   }
 
   private drag(event: PointerEvent): void {
     const { draft, line, viewer } = this;
     if (!draft || !line) return;
-    const at = fromPixels(viewer.at(event), viewer.size);
+    const at = fromPixels(viewer.at(event), viewer.clear);
     if (draft.tool === "arrow") this.line = arrow(line[0], at);
     else if (isNew(line, at)) line.push(at);
     this.place();

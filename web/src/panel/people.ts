@@ -114,8 +114,8 @@ export class People {
     this.faces.hidden = !others;
     const seen = role.people.slice(0, MOST_SEEN);
     const rest = role.people.length - seen.length;
-    this.faces.replaceChildren(...seen.map(face), rest ? h("span", { class: "face rest" }, `+${rest}`) : "");
-    this.faces.setAttribute("aria-label", `${role.people.length} people are here`);
+    this.faces.replaceChildren(...seen.map(face), rest ? h("span", { class: "face rest", "aria-hidden": "true" }, `+${rest}`) : "");
+    this.faces.append(h("span", { class: "heard" }, `${role.people.length} people are here`));
     this.faces.title = role.people.map((person) => `${person.name}: ${does(person)}`).join("\n");
     this.list.replaceChildren(...role.people.map(row));
     const own = role.people.find((person) => person.you);

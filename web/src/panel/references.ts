@@ -3,13 +3,14 @@
 import { h, iconButton } from "../dom";
 import type { Model } from "../model";
 import type { Reference } from "../protocol";
+import { toPixels } from "../view/marks";
 import type { Viewer } from "../view/viewer";
 import { bindKey, typing } from "./keys";
 import "./references.css";
 import type { Notices } from "./status";
 import type { Tray, TrayTab } from "./tray";
 
-const MODES = { off: "hidden", beside: "beside", over: "over" };
+const MODES = { off: "hidden", next: "next to it", over: "over" };
 const LARGEST = 2048; // pixels on the long side of a picture that is kept
 const PATCH = 5; // pixels of a picture whose mean the eyedropper takes, on each side
 
@@ -46,7 +47,7 @@ export class References {
       const files = [...(event.clipboardData?.files ?? [])];
       if (files.length && !typing(event)) void this.addAll(files);
     });
-    addEventListener("resize", () => this.placeAll());
+    model.on("clear", () => this.placeAll());
     bindKey({ keys: "Escape", does: "put the eyedropper away", on: (event) => this.picking && event.key === "Escape", run: () => this.pick(false) });
     this.update();
   }
@@ -93,13 +94,14 @@ export class References {
   private place(id: string, { mode, opacity, x, y, scale }: Placement): void {
     const image = this.images.get(id);
     if (!image) return;
-    const { width, height } = this.viewer.size;
+    const { clear } = this.viewer;
     image.hidden = mode === "off";
     image.dataset["mode"] = mode;
     image.style.opacity = String(mode === "over" ? opacity : 1);
-    image.style.left = `${width / 2 + x * height}px`;
-    image.style.top = `${height / 2 - y * height}px`;
-    image.style.height = `${scale * height}px`;
+    const middle = toPixels([x, y], clear);
+    image.style.left = `${middle.x}px`;
+    image.style.top = `${middle.y}px`;
+    image.style.height = `${scale * clear.height}px`;
   }
 
   /** A picture that is moved by dragging it, and scaled by the wheel. */
@@ -119,7 +121,7 @@ export class References {
     });
     image.addEventListener("pointermove", (event) => {
       if (!from) return;
-      const { height } = this.viewer.size;
+      const { height } = this.viewer.clear;
       const { mode, opacity, x, y, scale } = entry();
       moved = { mode, opacity, scale, x: x + (event.clientX - from.x) / height, y: y - (event.clientY - from.y) / height };
       this.place(id, moved);

@@ -5,9 +5,11 @@ import { h, iconButton } from "../dom";
 import type { Model } from "../model";
 import type { Render, Rendered } from "../protocol";
 import { keep } from "../view/capture";
+import type { Size } from "../view/box";
 import type { Viewer } from "../view/viewer";
 import { bindKey, plainKey } from "./keys";
 import type { Viewbar } from "./viewbar";
+import { WipeLine } from "./wipe_line";
 
 const SAMPLES = [16, 64, 256];
 const MOST_PIXELS = 2048; // along a side
@@ -25,21 +27,13 @@ export class RenderPanel {
   picture: RenderedPicture | null = null;
   private request: Render | null = null;
   private number = 0;
-  private wiped = 1;
-  private dragged = false;
   private readonly image = h("img", { alt: "Path-traced picture", draggable: "false" });
+  private readonly frame = h("div", { class: "rendered" }, this.image);
   private readonly state = h("output", { class: "render-state", role: "status" });
   private readonly samples = h("select", { "aria-label": "Samples per pixel" });
   private readonly stopping = h("button", { type: "button", class: "quiet", onclick: () => this.stop() }, "Stop");
   private readonly saving = h("button", { type: "button", class: "quiet", onclick: () => this.save() }, "Save PNG");
-  private readonly line = h("div", {
-    class: "render-line",
-    role: "slider",
-    tabindex: 0,
-    "aria-label": "Wipe between render and live picture",
-    "aria-valuemin": 0,
-    "aria-valuemax": 100,
-  });
+  private readonly line = new WipeLine("Wipe between render and live picture", (at) => this.wipe(at));
 
   constructor(
     private readonly model: Model,
@@ -52,21 +46,21 @@ export class RenderPanel {
     this.samples.addEventListener("change", () => this.start());
     const close = h("button", { type: "button", class: "quiet", onclick: () => this.close() }, "Close");
     const bar = h("div", { class: "render-bar" }, this.state, this.samples, this.stopping, this.saving, close);
-    this.element = h("section", { class: "render", hidden: true, "aria-label": "Render" }, this.image, this.line, bar);
+    this.element = h("section", { class: "render", hidden: true, "aria-label": "Render" }, this.frame, this.line.element, bar);
     viewbar.element.append(iconButton("render", "Render (R)", () => this.start()));
     bindKey({ keys: "R", does: "render the picture, path-traced", on: plainKey("r"), run: () => this.start() });
-    this.bindLine();
     model.on("look", () => this.followLook());
     model.on("compared", () => viewer.compared && this.close());
     model.on("numbers", () => this.tell());
   }
 
   /** Renders what is seen, in place of the last render. */
-  start(size = this.viewer.size): void {
+  start(size: Size = this.viewer.clear): void {
     if (this.viewer.compared) return;
     const request = this.seen(size);
     if (!request.width || !request.height) return;
     this.number += 1;
+    this.viewer.stay();
     this.request = { ...request, number: this.number };
     this.picture = null;
     this.revision = this.model.numbers?.revision ?? 0;
@@ -107,7 +101,7 @@ export class RenderPanel {
   }
 
   /** What is seen now, as a request. */
-  private seen(size: { width: number; height: number }): Render {
+  private seen(size: Size): Render {
     const part = Math.min(1, MOST_PIXELS / Math.max(size.width, size.height, 1));
     return {
       kind: "render",
@@ -124,7 +118,7 @@ export class RenderPanel {
   /** A picture of another view, light or color is not that of what is seen. */
   private followLook(): void {
     if (!this.request) return;
-    const now = this.seen(this.viewer.size);
+    const now = this.seen(this.viewer.clear);
     const then = this.request;
     const kept = ["camera", "focal_length", "light", "light_turn", "color"] as const;
     if (kept.some((name) => JSON.stringify(now[name]) !== JSON.stringify(then[name]))) this.close();
@@ -148,33 +142,11 @@ export class RenderPanel {
     this.state.textContent = `${this.done ? `Rendered, ${picture?.samples} samples` : count}${earlier}`;
     this.stopping.hidden = this.done;
     this.saving.hidden = !picture;
-    this.line.hidden = !picture;
+    this.line.element.hidden = !picture;
   }
 
-  private wipe(part: number): void {
-    this.wiped = Math.min(1, Math.max(0, part));
-    this.image.style.clipPath = `inset(0 ${100 * (1 - this.wiped)}% 0 0)`;
-    this.line.style.left = `clamp(12px, ${100 * this.wiped}%, calc(100% - 12px))`;
-    this.line.setAttribute("aria-valuenow", String(Math.round(100 * this.wiped)));
-  }
-
-  private bindLine(): void {
-    const { line } = this;
-    line.addEventListener("pointerdown", (event) => {
-      this.dragged = true;
-      line.setPointerCapture(event.pointerId);
-    });
-    line.addEventListener("pointermove", (event) => {
-      const box = this.element.getBoundingClientRect();
-      if (this.dragged) this.wipe((event.clientX - box.left) / box.width);
-    });
-    for (const name of ["pointerup", "pointercancel"] as const) line.addEventListener(name, () => (this.dragged = false));
-    line.addEventListener("keydown", (event) => {
-      const by = { ArrowLeft: -0.02, ArrowRight: 0.02 }[event.key];
-      if (!by) return;
-      event.preventDefault();
-      event.stopPropagation();
-      this.wipe(this.wiped + by);
-    });
+  private wipe(at: number): void {
+    this.frame.style.clipPath = `inset(0 ${100 * (1 - at)}% 0 0)`;
+    this.line.place(at);
   }
 }

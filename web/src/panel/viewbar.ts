@@ -33,13 +33,13 @@ export class Viewbar {
     viewer.onLook = () => model.tell("look");
     light.addEventListener("change", () => {
       const rig = model.welcome?.rigs[light.value];
-      if (rig) viewer.setLights(rig);
+      if (rig) viewer.stage.setLights(rig);
       model.tell("look");
     });
 
     color.addEventListener("change", () => {
       const colors = model.welcome?.colors ?? {};
-      viewer.setColour(colors[color.value] ?? null, colors["dark_brown"]);
+      viewer.stage.setColour(colors[color.value] ?? null, colors["dark_brown"]);
       model.tell("look");
     });
     model.on("welcome", () => {

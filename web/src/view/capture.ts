@@ -38,13 +38,14 @@ export class Recorder {
     });
     this.recorder.ondataavailable = (event) => this.parts.push(event.data);
     this.recorder.start(500);
-    this.viewer.move();
+    this.viewer.compose(true);
   }
 
   stop(name: string): void {
     const recorder = this.recorder;
     this.recorder = null;
     if (!recorder) return;
+    this.viewer.compose(false);
     recorder.onstop = () => {
       const type = recorder.mimeType.split(";")[0];
       keep(new Blob(this.parts, { type }), `${name}.${type.endsWith("mp4") ? "mp4" : "webm"}`);

@@ -18,6 +18,7 @@ import {
   type WebGLRenderer,
   WebGLRenderTarget,
 } from "three";
+import type { Box } from "./box";
 import { DEVELOP } from "./shaders";
 
 const VERTEX = /* glsl */ `
@@ -38,23 +39,24 @@ ${DEVELOP}
 uniform sampler2D sum;
 uniform float drawings;
 uniform vec2 size;
-uniform bool clear;
+uniform vec4 seen; // what the camera aims at: its top left, width and height
+uniform bool transparent;
 out vec4 color;
 
 // A pool of light behind the subject.
 vec3 backdrop(vec2 at) {
-  vec2 away = vec2(at.x - 0.5, 0.85 * (at.y - 0.55) * size.y / size.x) / 0.78;
+  vec2 away = vec2(at.x - 0.5, 0.85 * (at.y - 0.55) * seen.w / seen.z) / 0.78;
   return mix(vec3(0.05, 0.062, 0.072), vec3(0.33, 0.38, 0.40), exp(-2.2 * dot(away, away)));
 }
 
 void main() {
   vec4 light = texelFetch(sum, ivec2(gl_FragCoord.xy), 0) / drawings;
   float grain = fract(sin(dot(gl_FragCoord.xy, vec2(12.9898, 78.233))) * 43758.5453) - 0.5;
-  if (clear) {
+  if (transparent) {
     color = vec4(develop(light.rgb / max(light.a, 1e-6)), light.a);
     return;
   }
-  vec2 at = vec2(gl_FragCoord.x, size.y - gl_FragCoord.y) / size;
+  vec2 at = (vec2(gl_FragCoord.x, size.y - gl_FragCoord.y) - seen.xy) / seen.zw;
   color = vec4(develop(light.rgb + (1.0 - light.a) * backdrop(at)) + grain / 255.0, 1.0);
 }
 `;
@@ -73,7 +75,8 @@ export class Film {
     sum: { value: null },
     drawings: { value: 1 },
     size: { value: [1, 1] },
-    clear: { value: false },
+    seen: { value: [0, 0, 1, 1] },
+    transparent: { value: false },
   });
 
   /** samples: of each drawing */
@@ -127,9 +130,10 @@ export class Film {
     this.drawings++;
   }
 
-  /** Develops the film to the canvas, or to another target. */
-  show(renderer: WebGLRenderer, into: WebGLRenderTarget | null = null): void {
+  /** Develops the film to the canvas, or to another target. seen: what the camera aims at, around which the backdrop is lit [pixels of the film] */
+  show(renderer: WebGLRenderer, { x, y, width, height }: Box, into: WebGLRenderTarget | null = null): void {
     this.set(false);
+    this.present.uniforms["seen"].value = [x, y, width, height];
     renderer.setRenderTarget(into);
     this.fill(renderer, this.present);
   }
@@ -151,12 +155,12 @@ export class Film {
     return image;
   }
 
-  private set(clear: boolean): void {
+  private set(transparent: boolean): void {
     const { uniforms } = this.present;
     uniforms["sum"].value = this.sum.texture;
     uniforms["drawings"].value = Math.max(this.drawings, 1);
     uniforms["size"].value = [this.sum.width, this.sum.height];
-    uniforms["clear"].value = clear;
+    uniforms["transparent"].value = transparent;
   }
 
   private fill(renderer: WebGLRenderer, one: RawShaderMaterial): void {

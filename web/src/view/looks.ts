@@ -1,33 +1,29 @@
 // Which looks are in the picture, and where: one alone, up to four next to one another, or two in one place.
 
 import type { Hairs } from "../protocol";
+import type { Box, Size } from "./box";
 
 /** A look in the picture: that of the open recipe is on side a. */
 export type Side = Hairs["side"];
 
 export type Arrangement = "split" | "wipe" | "flip" | "difference";
 
-const SUBJECT = 0.8; // width of what is framed, as a part of the height of its cell
+const SUBJECT = 0.8; // width of a subject, as a fraction of the height of the picture that frames it
+const WORTH = 1.2; // factor by which looks are larger where one more row is worth it
 export const MOST_LOOKS = 4;
 
-/** Where a look is drawn, from the top left of the picture [pixels]. */
+/** Where a look is drawn. */
 export interface Cell {
   side: Side;
-  /** What it fills. */
+  /** What it fills of the canvas. */
   box: Box;
-  /** What is not covered by panels there: the camera aims at the middle of it. */
+  /** The canvas of its camera, of which the box is a part. */
+  canvas: Box;
+  /** What panels leave clear of that canvas: the camera aims at the middle of it, and sees its height. */
   clear: Box;
+  /** How much nearer than alone it is seen, so that all of it fits what is clear. */
+  zoom: number;
 }
-
-interface Box {
-  x: number;
-  y: number;
-  width: number;
-  height: number;
-}
-
-/** How much of the picture panels cover: on the left, on the right, above and below [pixels]. */
-export type Covered = [number, number, number, number];
 
 export class Looks {
   /** The looks in the picture, the first on the left. */
@@ -35,7 +31,7 @@ export class Looks {
   arrangement: Arrangement = "split";
   /** The one that is seen alone. */
   front: Side = "a";
-  /** Where the wipe is, as a part of the width. */
+  /** Where the wipe is, as a fraction of the clear width. */
   wipe = 0.5;
 
   get several(): boolean {
@@ -72,53 +68,52 @@ export class Looks {
     this.front = this.order[(this.order.indexOf(this.front) + 1) % this.order.length];
   }
 
-  /** The looks that are drawn, and where. */
-  cells(width: number, height: number, covered: Covered): Cell[] {
-    const all = { x: 0, y: 0, width, height };
-    const whole = (side: Side, box: Box = all): Cell => ({ side, box, clear: all });
+  /** The looks that are drawn, and where. clear: what panels leave of the canvas */
+  cells(size: Size, clear: Box): Cell[] {
+    const all = { x: 0, y: 0, ...size };
+    const whole = (side: Side, box: Box = all): Cell => ({ side, box, canvas: all, clear, zoom: 1 });
     if (!this.several) return [whole(this.order[0])];
-    if (this.split) return this.grid(width, height, covered);
+    if (this.split) return this.grid(all, clear);
     if (this.arrangement === "flip") return [whole(this.front)];
     const [first, second] = this.order;
     if (this.arrangement === "difference") return [whole(first), whole(second)];
-    const at = Math.round(this.wipe * width);
+    const at = Math.round(clear.x + this.wipe * clear.width);
     return [
       whole(first, { ...all, width: at }),
-      whole(second, { ...all, x: at, width: width - at }),
+      whole(second, { ...all, x: at, width: size.width - at }),
     ];
   }
 
-  /** How much nearer than alone a look is seen, so that all of it fits its cell. */
-  zoom({ clear }: Cell): number {
-    return this.split ? Math.min(1, clear.width / (SUBJECT * clear.height)) : 1;
-  }
-
-  /** Rows and columns in which looks are largest; those at the border of the picture reach it. */
-  private grid(width: number, height: number, covered: Covered): Cell[] {
-    const [left, right] = covered.slice(0, 2).map((pixels) => Math.min(pixels, 0.4 * width));
+  /** Looks next to one another, in more rows where they are much larger so; those at the border of the canvas reach it. */
+  private grid(all: Box, clear: Box): Cell[] {
     const count = this.order.length;
     const plans = Array.from({ length: count }, (_, k) => {
-      const columns = k + 1;
+      const columns = count - k;
       const rows = Math.ceil(count / columns);
-      const [top, bottom] = rows > 1 ? covered.slice(2) : [0, 0];
-      const [w, h] = [(width - left - right) / columns, (height - top - bottom) / rows];
-      return { columns, rows, top, w, h, size: Math.min(w / SUBJECT, h) };
+      const [width, height] = [clear.width / columns, clear.height / rows];
+      return { columns, rows, width, height, size: fits({ width, height }) };
     });
-    const plan = plans.reduce((best, one) => (one.size > best.size ? one : best));
+    const plan = plans.reduce((best, one) => (one.size > WORTH * best.size ? one : best));
+    const subject = Math.min(SUBJECT, clear.width / clear.height);
     return this.order.map((side, k) => {
       const [column, row] = [k % plan.columns, Math.floor(k / plan.columns)];
       const last = k === count - 1 || column === plan.columns - 1;
       const span = last ? plan.columns - column : 1; // the last of an incomplete row fills it
-      const clear = {
-        x: left + column * plan.w,
-        y: plan.top + row * plan.h,
-        width: span * plan.w,
-        height: plan.h,
+      const mine = {
+        x: clear.x + column * plan.width,
+        y: clear.y + row * plan.height,
+        width: span * plan.width,
+        height: plan.height,
       };
-      const x = column === 0 ? 0 : clear.x;
-      const y = row === 0 ? 0 : clear.y;
-      const [toX, toY] = [last ? width : clear.x + clear.width, row === plan.rows - 1 ? height : clear.y + clear.height];
-      return { side, box: { x, y, width: toX - x, height: toY - y }, clear };
+      const [x, y] = [column === 0 ? 0 : mine.x, row === 0 ? 0 : mine.y];
+      const [toX, toY] = [last ? all.width : mine.x + mine.width, row === plan.rows - 1 ? all.height : mine.y + mine.height];
+      const box = { x, y, width: toX - x, height: toY - y };
+      return { side, box, canvas: box, clear: mine, zoom: Math.min(1, mine.width / (subject * mine.height)) };
     });
   }
+}
+
+/** Height at which a subject fits [pixels]. */
+export function fits({ width, height }: Size): number {
+  return Math.min(width / SUBJECT, height);
 }

@@ -1,23 +1,21 @@
-// Lines that are drawn over the picture. Their points are from its middle, to the right and up, in heights of the
-// picture, so that they are in place in a picture of any size.
+// Lines that are drawn over the picture. Their points are from the middle of what the camera sees, to the right and up,
+// in heights of it, so that they are in place in a picture of any size.
+
+import type { Box } from "./box";
 
 export type Stroke = [number, number][];
-export interface Size {
-  width: number;
-  height: number;
-}
 
 const HEAD = 0.035; // length of the head of an arrow
 const NEAREST = 0.003; // distance from which a point of a line is kept
 
 /** The point of the pointer in heights of the picture. */
-export function fromPixels({ x, y }: { x: number; y: number }, { width, height }: Size): [number, number] {
+export function fromPixels(at: { x: number; y: number }, { x, y, width, height }: Box): [number, number] {
   const round = (value: number) => Number(value.toFixed(4));
-  return [round((x - width / 2) / height), round((height / 2 - y) / height)];
+  return [round((at.x - x - width / 2) / height), round((y + height / 2 - at.y) / height)];
 }
 
-export function toPixels([x, y]: [number, number], { width, height }: Size): { x: number; y: number } {
-  return { x: width / 2 + x * height, y: height / 2 - y * height };
+export function toPixels([right, up]: [number, number], { x, y, width, height }: Box): { x: number; y: number } {
+  return { x: x + width / 2 + right * height, y: y + height / 2 - up * height };
 }
 
 /** An arrow as one line: its shaft, and both sides of its head. */
@@ -37,18 +35,18 @@ export function isNew(stroke: Stroke, [x, y]: [number, number]): boolean {
 }
 
 /** Draws lines into a picture. */
-export function paintStrokes(context: CanvasRenderingContext2D, strokes: Stroke[], size: Size): void {
+export function paintStrokes(context: CanvasRenderingContext2D, strokes: Stroke[], picture: Box): void {
   context.lineJoin = context.lineCap = "round";
   for (const [width, color] of [
     [0.01, "rgb(0 0 0 / 0.55)"],
     [0.006, "#ffb45e"],
   ] as const) {
-    context.lineWidth = width * size.height;
+    context.lineWidth = width * picture.height;
     context.strokeStyle = color;
     for (const stroke of strokes) {
       context.beginPath();
       stroke.forEach((point, k) => {
-        const { x, y } = toPixels(point, size);
+        const { x, y } = toPixels(point, picture);
         if (k) context.lineTo(x, y);
         else context.moveTo(x, y);
       });

@@ -2,7 +2,8 @@
 
 import { Vector3 } from "three";
 import type { Note } from "../protocol";
-import { paintStrokes, type Size } from "./marks";
+import type { Size } from "./box";
+import { paintStrokes } from "./marks";
 import { onScreen } from "./pick";
 import type { Viewer } from "./viewer";
 
@@ -65,7 +66,7 @@ export function sheet(viewer: Viewer, notes: Note[], title: string, file: string
 /** Draws the lines of a note, and the place that it is pinned to. */
 function mark(picture: HTMLCanvasElement, viewer: Viewer, note: Note, number: string): void {
   const context = picture.getContext("2d")!;
-  paintStrokes(context, note.strokes, NOTE);
+  paintStrokes(context, note.strokes, { x: 0, y: 0, ...NOTE });
   if (!note.at) return;
   const { camera } = viewer;
   const aspect = camera.aspect;

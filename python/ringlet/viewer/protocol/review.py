@@ -19,13 +19,13 @@ Stroke = Annotated[list[tuple[Small, Small]], Field(min_length=1, max_length=200
 class Placement(Message):
     """Where a reference picture is.
 
-    mode:    ``beside`` the look, ``over`` it, or ``off``
+    mode:    ``next`` to the look, ``over`` it, or ``off``
     opacity: over the look, from 0 to 1
     x, y:    its middle from that of the picture, to the right and up, in heights of the picture
     scale:   its height, in heights of the picture
     """
 
-    mode: Literal["off", "beside", "over"] = "off"
+    mode: Literal["off", "next", "over"] = "off"
     opacity: float = Field(default=0.5, ge=0.0, le=1.0)
     x: Small = 0.0
     y: Small = 0.0

@@ -1,0 +1,133 @@
+"""Every state of the review page against WCAG 2.2 AA, as far as axe-core sees it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from conftest import REQUIRED, Review
+
+AXE = Path(__file__).parents[2] / "web/node_modules/axe-core/axe.min.js"
+TAGS = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa"]
+RUN = """(tags) => axe.run(document, { runOnly: { type: "tag", values: tags }, resultTypes: ["violations"] })
+    .then(({ violations }) => violations.flatMap(({ id, nodes }) =>
+        nodes.map(({ html, failureSummary }) => `${id}: ${html.slice(0, 160)} ${failureSummary.slice(0, 200)}`)))"""
+
+pytestmark = pytest.mark.skipif(not AXE.exists() and not REQUIRED, reason="axe-core is not installed: tools/web.sh")
+
+
+class Checked:
+    """A page, and what axe-core finds in each of its states."""
+
+    def __init__(self, review: Review) -> None:
+        self.review = review
+        self.found: dict[str, list[str]] = {}
+        review.page.evaluate(AXE.read_text())
+
+    def check(self, state: str) -> None:
+        violations = self.review.page.evaluate(RUN, TAGS)
+        if violations:
+            self.found[state] = violations
+
+
+def test_a_button_without_a_name_is_found(opened: Any):
+    checked = Checked(opened(viewport={"width": 500, "height": 500}))
+    checked.review.get("document.querySelector('.bar').append(document.createElement('button'))")
+    checked.check("nameless")
+    assert any(found.startswith("button-name") for found in checked.found["nameless"])
+
+
+def test_every_state_of_a_recipe_is_accessible(opened: Any):
+    review: Review = opened(viewport={"width": 1280, "height": 800})
+    page, checked = review.page, Checked(review)
+    checked.check("first sight")
+    for stage in review.get("[...document.querySelectorAll('.stage-name')].map((one) => one.dataset.stage)"):
+        review.choose(stage)
+        review.show_all_settings()
+        checked.check(stage)
+    review.get("ringlet.lock.choose(2)")
+    checked.check("a lock")
+    review.get("ringlet.lock.choose(-1)")
+    review.get("ringlet.brush.show(true)")
+    checked.check("sculpting")
+    review.get("ringlet.brush.show(false)")
+    page.get_by_role("button", name="Camera, light and sheet").click()
+    checked.check("camera and light")
+    page.keyboard.press("Escape")
+    page.get_by_role("button", name="Looks and presets").click()
+    checked.check("presets")
+    page.keyboard.press("Escape")
+    page.locator(".search").first.fill("width")
+    checked.check("search")
+    page.locator(".search").first.fill("")
+    page.locator("main canvas").focus()
+    for key, state in {"s": "", "t": "snapshots", "a": "a note"}.items():
+        page.keyboard.press(key)
+        if key == "s":
+            review.until("document.querySelector('.card img')?.naturalWidth || ringlet.model.snapshots.length")
+        if state:
+            checked.check(state)
+    page.keyboard.press("Escape")
+    page.get_by_role("tab", name="References").click()
+    checked.check("references")
+    page.get_by_role("button", name="Close the tray").click()
+    page.keyboard.press("?")
+    checked.check("help")
+    page.keyboard.press("Escape")
+    page.get_by_role("button", name="Save as…").click()
+    checked.check("save as")
+    page.keyboard.press("Escape")
+    page.get_by_label("Compare with another look").select_option("now")
+    review.until("ringlet.viewer.compared")
+    for arrangement in ("split", "wipe"):
+        page.get_by_label("Arrangement of the two looks").select_option(arrangement)
+        checked.check(f"compared, {arrangement}")
+    page.get_by_role("button", name="Changes").click()
+    checked.check("changes")
+    page.get_by_role("button", name="End", exact=True).click()
+    page.get_by_label("Dark or light").click()
+    checked.check("light theme")
+    assert checked.found == {}
+
+
+def test_a_render_is_accessible(opened: Any):
+    review: Review = opened(viewport={"width": 500, "height": 500})
+    choose = "(list) => { list.append(new Option('1 sample', '1')); list.value = '1'; }"
+    review.page.get_by_label("Samples per pixel").evaluate(choose)
+    review.get("ringlet.render.start({ width: 64, height: 64 })")
+    review.until("ringlet.render.picture")
+    checked = Checked(review)
+    checked.check("render")
+    assert checked.found == {}
+
+
+def test_a_shot_is_accessible(opened: Any):
+    review: Review = opened("small.shot.toml", viewport={"width": 1280, "height": 800})
+    checked = Checked(review)
+    checked.check("shot")
+    review.choose("shot:strands")
+    checked.check("strands")
+    assert checked.found == {}
+
+
+def test_people_are_accessible(opened: Any, serve: Any):
+    server = serve("small.recipe.toml")
+    _, review = (opened(server, viewport={"width": 900, "height": 500}) for _ in range(2))
+    checked = Checked(review)
+    checked.check("a follower that is asked for a name")
+    review.page.get_by_role("button", name="Stay a guest").click()
+    review.page.get_by_role("button", name="2 people are here").click()
+    checked.check("people")
+    assert checked.found == {}
+
+
+@pytest.mark.parametrize("width, height", [(390, 844), (820, 1180)])
+def test_small_screens_are_accessible(opened: Any, width: int, height: int):
+    review: Review = opened(viewport={"width": width, "height": height}, has_touch=True, is_mobile=True)
+    checked = Checked(review)
+    for sheet in ("Settings", "Stages", "View", "Picture") if width <= 720 else ("",):
+        if sheet:
+            review.page.get_by_role("navigation", name="Panels").get_by_role("button", name=sheet).click()
+        checked.check(sheet)
+    assert checked.found == {}

@@ -1,0 +1,62 @@
+// What panels leave clear of the picture, measured: the subject is in the middle of it, and what is laid over the
+// picture goes by it, as CSS variables.
+
+import type { Box } from "../view/box";
+import { fits } from "../view/looks";
+
+const GAP = 14; // between a panel and what is next to it [pixels]
+
+export class ClearArea {
+  private box = "";
+
+  /** above, below: bars at the edges; sides: panels in columns on the left and on the right */
+  constructor(
+    private readonly above: HTMLElement[],
+    private readonly sides: HTMLElement[],
+    private readonly below: HTMLElement[],
+    private readonly changed: (clear: Box) => void,
+  ) {
+    const observer = new ResizeObserver(() => this.measure());
+    for (const element of [document.documentElement, ...above, ...sides, ...below]) observer.observe(element);
+  }
+
+  /** The largest of two rectangles: between the columns, and below them. */
+  private measure(): void {
+    const { innerWidth, innerHeight } = window;
+    const top = Math.max(0, ...this.above.flatMap(seen).map(({ bottom }) => bottom));
+    let bottom = Math.min(innerHeight, ...this.below.flatMap(seen).map(({ top }) => top - GAP / 2));
+    const edge = innerHeight - bottom + GAP / 2;
+    let [left, right, under] = [0, innerWidth, top];
+    for (const box of this.sides.flatMap(seen)) {
+      if (box.width > 0.5 * innerWidth) bottom = Math.min(bottom, box.top - GAP / 2);
+      else if (box.left + box.right < innerWidth) left = Math.max(left, box.right + GAP);
+      else right = Math.min(right, box.left - GAP);
+      under = Math.max(under, box.bottom + GAP / 2);
+    }
+    const whole = (x: number, y: number, width: number, height: number): Box => ({
+      x: Math.round(x),
+      y: Math.round(y),
+      width: Math.max(Math.round(width), 1),
+      height: Math.max(Math.round(height), 1),
+    });
+    const between = whole(left, top, right - left, bottom - top);
+    const beneath = whole(0, under, innerWidth, bottom - under);
+    const clear = fits(beneath) > fits(between) ? beneath : between;
+    const { style } = document.documentElement;
+    style.setProperty("--below", `${edge}px`);
+    style.setProperty("--left", `${clear.x}px`);
+    style.setProperty("--right", `${innerWidth - clear.x - clear.width}px`);
+    style.setProperty("--top", `${clear.y}px`);
+    style.setProperty("--bottom", `${innerHeight - clear.y - clear.height}px`);
+    const now = JSON.stringify(clear);
+    if (now === this.box) return;
+    this.box = now;
+    this.changed(clear);
+  }
+}
+
+/** The box of an element, if it is seen. */
+function seen(element: HTMLElement): DOMRect[] {
+  const box = element.getBoundingClientRect();
+  return box.width && box.height ? [box] : [];
+}
