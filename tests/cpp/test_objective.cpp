@@ -187,6 +187,21 @@ BOOST_AUTO_TEST_CASE(the_line_search_shortens_the_objects_that_cause_the_excess_
     BOOST_TEST(step[2] == 1.0);
 }
 
+BOOST_AUTO_TEST_CASE(an_initial_overlap_has_only_its_own_activation_distance_to_build_its_force_in) {
+    SpringScene scene = crossing_bars();
+    scene.begin(0.01);
+    ContactSet &contacts = scene.objective->contacts;
+    const std::vector<Vec3> now = scene.configuration->positions;
+    contacts.begin(scene.table.mesh, scene.table.material, scene.touching(), {}, now); // gaps of 0.75 and 0.65 of d̂
+    contacts.overlaps.grow(1e-4);
+    find_contacts(scene);
+    BOOST_REQUIRE(contacts.contacts().size() == 2u);
+    for (const Contact &contact : contacts.contacts()) {
+        BOOST_TEST(contact.d_hat < 0.9 * 2.0 * SpringScene::radius);
+        BOOST_TEST(contact.loaded_fraction == contact.d_hat / (2.0 * SpringScene::radius), boost::test_tools::tolerance(1e-12));
+    }
+}
+
 BOOST_AUTO_TEST_CASE(a_shortened_path_is_the_beginning_of_the_path) {
     SpringScene scene = crossing_bars();
     scene.begin(0.01);

@@ -87,12 +87,12 @@ void ContactSet::commit_friction(View<Vec3> positions) {
 template <class Work>
 void ContactSet::for_active_points(const CollisionMesh &mesh, const ContactPair &pair, View<Vec3> positions,
                                    const Work &work) const {
-    double d_hat = pair.d_hat, loaded_fraction = 1.0;
+    double d_hat = pair.d_hat, room = pair.d_hat; // over which the force builds up
     if (const InitialOverlap *overlap = overlaps.find(pair)) {
-        d_hat = std::min(d_hat, overlap->activation);
-        if (overlap->force > 0.0)
-            loaded_fraction = std::max(1.0 - overlap->gap / pair.d_hat, contact_settings::least_loaded_fraction);
+        room = d_hat = std::min(d_hat, overlap->activation);
+        if (overlap->force > 0.0) room = std::min(room, pair.d_hat - overlap->gap);
     }
+    const double loaded_fraction = std::max(room / pair.d_hat, contact_settings::least_loaded_fraction);
     for_contact_points(mesh, pair, positions, [&](const ContactPoint &point) {
         const double gap = std::sqrt(point.closest.distance2);
         if (!(gap > 0.0 && gap < d_hat)) return;
