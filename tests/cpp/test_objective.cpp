@@ -26,6 +26,16 @@ void find_contacts(SpringScene &scene) {
     scene.objective->find_contacts(scene.touching(), now, now);
 }
 
+// Begins a step; the path along its first Newton direction.
+SearchPath newton_path(SpringScene &scene) {
+    scene.begin(0.01);
+    find_contacts(scene);
+    scene.system->assemble(scene.unknowns(), {});
+    SearchPath path(scene.blocks->size());
+    scene.system->solve({.tolerance = 1e-10}, path.straight);
+    return path;
+}
+
 // The Hessian that the objective has assembled, as a dense matrix.
 Eigen::MatrixXd dense(const Objective &objective) {
     const AssembledMatrix whole(objective);
@@ -147,12 +157,8 @@ BOOST_AUTO_TEST_CASE(banded_refuses_what_contacts_couple) {
 
 BOOST_AUTO_TEST_CASE(the_line_search_shortens_a_cluster_and_leaves_the_others_alone) {
     SpringScene scene = crossing_bars();
-    scene.begin(0.01);
-    find_contacts(scene);
+    SearchPath path = newton_path(scene);
     const AlignedVector x = scene.unknowns();
-    scene.system->assemble(x, {});
-    SearchPath path(scene.blocks->size());
-    scene.system->solve({.tolerance = 1e-10}, path.straight);
     for (size_t i = 0; i < 18; ++i) path.straight[i] *= 3.0; // the cluster overshoots: its energy would rise
     AlignedVector to = x.copy();
     const ReachablePairs pairs = scene.configuration->pairs.reachable_pairs(scene.blocks->active_objects());
@@ -166,12 +172,8 @@ BOOST_AUTO_TEST_CASE(the_line_search_shortens_a_cluster_and_leaves_the_others_al
 
 BOOST_AUTO_TEST_CASE(the_line_search_shortens_the_objects_that_cause_the_excess_of_their_cluster) {
     SpringScene scene = crossing_bars();
-    scene.begin(0.01);
-    find_contacts(scene);
+    SearchPath path = newton_path(scene);
     const AlignedVector x = scene.unknowns();
-    scene.system->assemble(x, {});
-    SearchPath path(scene.blocks->size());
-    scene.system->solve({.tolerance = 1e-10}, path.straight);
     for (size_t i = 0; i < 6; ++i)
         path.straight[i] *= 3.0; // bar 0 overshoots far, and bar 2, which does not touch it, a little
     for (size_t i = 12; i < 18; ++i) path.straight[i] *= 2.05;
