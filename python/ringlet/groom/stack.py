@@ -42,6 +42,8 @@ Progress = Callable[[str, int, int], None]
 
 MUCH_LONGER = 2.0  # factor on the length of a lock that a displacement is not expected to exceed
 STEEPLY_INWARD = -0.5  # cosine between a root's normal and the start of its lock
+MANY = 0.1  # share of locks; single ones that hang steeply, or over an edge, are laid along the scalp and need no word
+START = 0.02  # of a lock [m]: further along, hair that lies on a head is under the tangent plane of its root
 PLAUSIBLE_SIZES = (0.03, 2.0)  # [m] width of a scalp; a size ten times off suggests a wrong unit
 
 
@@ -278,11 +280,14 @@ def _lengthened(name: str, before: Curves, after: Curves) -> Iterator[str]:
 
 
 def _inward(locks: Curves, scalp: Scalp) -> Iterator[str]:
-    """A message for locks that start into the scalp: its faces may be turned inside out."""
-    start = grid(locks)[:, 1 : max(2, locks.counts[0] // 4)].mean(axis=1) - locks.roots
+    """A message where many locks start into the scalp: its faces may be turned inside out."""
+    points = grid(locks)[:, 1:]
+    along = np.linalg.norm(np.diff(grid(locks), axis=1), axis=2).cumsum(axis=1)
+    near = along < np.maximum(START, along[:, :1] * (1 + 1e-6))  # one point at least
+    start = np.where(near[:, :, None], points, 0.0).sum(axis=1) / near.sum(axis=1, keepdims=True) - locks.roots
     inward = np.einsum("ki,ki->k", unit(start), scalp.frames(locks)[:, :, 2]) < STEEPLY_INWARD
     inward &= locks.curve.get(TO_TIE, np.zeros(len(locks))) == 0.0  # hair that is led to a tie follows the curved skin
-    if inward.any():
+    if inward.mean() > MANY:
         yield (
             f"{inward.sum()} of {len(locks)} locks, such as {locks.ids[inward.argmax()]}, start into the scalp and are "
             f"laid along it; if they are outside of it, reverse the orientation of {scalp.mesh.name}"
