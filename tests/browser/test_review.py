@@ -275,7 +275,7 @@ def test_regions_and_overlays_are_chosen_from_lists(opened: Any, folder: Path):
     review.until("ringlet.model.measured?.nail.length")
     review.page.get_by_label("Overlay").select_option("nail")
     assert review.page.get_by_role("note").inner_text().split() == ["free", "held"]
-    assert different(review.picture(), plain) > 0.002  # few hairs cover few pixels
+    assert different(review.picture(), plain) > 0.001  # few hairs cover few pixels of what panels leave clear
     assert not review.errors
 
 

@@ -44,6 +44,7 @@ export class SwingChart {
     this.chart.setAttribute("viewBox", `0 0 ${WIDTH} ${HEIGHT}`);
     this.chart.setAttribute("preserveAspectRatio", "none");
     this.chart.setAttribute("role", "img");
+    this.chart.setAttribute("aria-label", "Swing of the tips");
     this.element.append(this.takes, h("div", { class: "swing-plot" }, this.chart, this.scale), h("div", { class: "swing-foot" }, this.legend, this.use));
     const scrub = (event: PointerEvent) => event.buttons & 1 && this.goTo(this.frameAt(event));
     this.chart.addEventListener("pointerdown", scrub);

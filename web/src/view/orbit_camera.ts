@@ -79,7 +79,8 @@ export class OrbitCamera {
   }
 
   private approach(factor: number): void {
-    this.camera.position.copy(this.controls.target).add(this.away.multiplyScalar(factor));
+    const { away } = this; // before the camera moves
+    this.camera.position.copy(this.controls.target).addScaledVector(away, factor);
   }
 
   /** Turns or approaches by a key; whether it was one of these. */
