@@ -139,6 +139,11 @@ class Review:
         self.get("ringlet.viewer.drawNow()")
         return self.picture_of(self.page, "ringlet.viewer")
 
+    def clear_picture(self) -> np.ndarray:
+        """Pixels of what panels leave clear, which the picture is composed for, shape (height, width, 3)."""
+        clear = self.get("ringlet.viewer.clear")
+        return self.picture()[clear["y"] :, clear["x"] :][: clear["height"], : clear["width"]]
+
     @staticmethod
     def picture_of(page: Any, viewer: str) -> np.ndarray:
         """Pixels of the canvas of a viewer, shape (height, width, 3)."""

@@ -161,10 +161,10 @@ def test_a_shot_is_compared_with_a_cache_and_overlays(opened: Any, folder: Path)
     review.until("ringlet.timeline.count == 4 && ringlet.model.timeline.state == 'done'")
     review.get("ringlet.timeline.show(4)")
     review.until("ringlet.timeline.settled")
-    plain = review.picture()
+    plain = review.clear_picture()
     for overlay in ("stretch", "curl"):
         review.page.get_by_label("Overlay").select_option(overlay)
-        assert different(review.picture(), plain) > 0.002  # few hairs cover few pixels
+        assert different(review.clear_picture(), plain) > 0.002  # few hairs cover few pixels
     assert review.page.locator('[data-number="inside"]').is_visible()
     ringlet.write_cache(cache, folder / "groom.usda", folder / "cache.usda")  # the open page is notified
     review.page.get_by_label("Compare with a run or cache").select_option("cache.usda")
@@ -173,7 +173,7 @@ def test_a_shot_is_compared_with_a_cache_and_overlays(opened: Any, folder: Path)
     review.page.get_by_label("Overlay").select_option("")
     review.get("ringlet.timeline.show(4)")
     review.until("ringlet.timeline.settled")
-    left, right = np.split(review.picture(), 2, axis=1)
+    left, right = np.split(review.clear_picture(), 2, axis=1)
     assert different(left, right) > 0.002
     assert not review.errors
 
@@ -195,15 +195,16 @@ def test_an_earlier_run_is_compared_by_wipe_and_the_chart_shows_its_swing(opened
     assert page.locator(".runs .stale").count() == 1
     run()
     assert page.locator(".runs span").count() == 1 and page.locator(".runs .stale").count() == 0
+    page.get_by_role("button", name="Swing and earlier runs").click()
     review.get("ringlet.timeline.goTo(4)")
     review.until("ringlet.timeline.settled")
-    now = review.picture()
+    now = review.clear_picture()
     page.get_by_label("Compare with a run or cache").select_option("run 1")
     review.until("ringlet.viewer.compared && ringlet.model.timeline.against == 'run 1'")
     page.get_by_label("Arrangement of the two looks").select_option("wipe")
     review.get("ringlet.timeline.goTo(4)")
     review.until("ringlet.timeline.settled && ringlet.timeline.drawn.against")
-    wiped = review.picture()
+    wiped = review.clear_picture()
     middle = wiped.shape[1] // 2
     assert different(wiped[:, : middle - 4], now[:, : middle - 4]) < different(wiped[:, middle:], now[:, middle:])
     assert page.get_by_role("button", name="Changes (1)").is_visible()
