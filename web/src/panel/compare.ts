@@ -145,12 +145,12 @@ export class CompareBar {
     this.legend.hidden = !looks.difference;
     this.stretch.hidden = looks.arrangement !== "wipe";
     this.line.place(looks.wipe);
-    this.labels.replaceChildren(...this.placed().map(([side, left, top, shift]) => this.label(side, left, top, shift)));
+    this.labels.replaceChildren(...this.placed().map((place) => this.label(...place)));
     this.list.replaceChildren(this.differences());
   }
 
-  /** Where the labels of the looks are: their left and top [pixels], and their shift as a part of their width. */
-  private placed(): [Side, number, number, number][] {
+  /** Where the labels of the looks are: their left and top [pixels], their shift as a part of their width, and their room. */
+  private placed(): [Side, number, number, number, number][] {
     const { looks, size, clear } = this.viewer;
     const bar = this.element.offsetTop;
     const under = this.bar.offsetTop + this.bar.offsetHeight + 8;
@@ -158,24 +158,25 @@ export class CompareBar {
     if (looks.split)
       return looks
         .cells(size, clear)
-        .map(({ side, clear }) => [side, clear.x + clear.width / 2, Math.max(under, clear.y + 8 - bar), -50]);
+        .map(({ side, clear }) => [side, clear.x + clear.width / 2, Math.max(under, clear.y + 8 - bar), -50, clear.width - 8]);
     const at = clear.x + clear.width * (looks.arrangement === "wipe" ? looks.wipe : 0.5);
-    if (looks.arrangement === "flip") return [[looks.front, at, under, -50]];
+    if (looks.arrangement === "flip") return [[looks.front, at, under, -50, clear.width]];
     const [first, second] = looks.order;
     return [
-      [first, at - 16, under, -100],
-      [second, at + 16, under, 0],
+      [first, at - 16, under, -100, clear.width / 2],
+      [second, at + 16, under, 0, clear.width / 2],
     ];
   }
 
-  private label(side: Side, left: number, top: number, shift: number): HTMLElement {
+  private label(side: Side, left: number, top: number, shift: number, room: number): HTMLElement {
     const { name, detail } = this.named(side);
     const remove = iconButton("close", `Take ‘${name}’ out`, () => this.remove(side), {
       disabled: this.viewer.looks.order.length < 3 || (side !== "a" && !this.model.role.leads),
       hidden: this.viewer.looks.order.length < 3,
     });
-    const style = `left: ${left}px; top: ${top}px; transform: translateX(${shift}%)`;
-    return h("div", { class: "look-label", style, "data-side": side }, h("b", {}, name), detail ? h("span", {}, detail) : null, remove);
+    const style = `left: ${left}px; top: ${top}px; transform: translateX(${shift}%); max-width: min(320px, ${room}px)`;
+    const told = detail ? h("span", { title: detail }, detail) : null;
+    return h("div", { class: "look-label", style, "data-side": side }, h("b", {}, name), told, remove);
   }
 
   private named(side: Side): { name: string; detail: string } {
