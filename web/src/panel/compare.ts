@@ -175,8 +175,8 @@ export class CompareBar {
       hidden: this.viewer.looks.order.length < 3,
     });
     const style = `left: ${left}px; top: ${top}px; transform: translateX(${shift}%); max-width: min(320px, ${room}px)`;
-    const told = detail ? h("span", { title: detail }, detail) : null;
-    return h("div", { class: "look-label", style, "data-side": side }, h("b", {}, name), told, remove);
+    const shown = detail ? h("span", { title: detail }, detail) : null;
+    return h("div", { class: "look-label", style, "data-side": side }, h("b", {}, name), shown, remove);
   }
 
   private named(side: Side): { name: string; detail: string } {
