@@ -32,7 +32,7 @@ def test_only_requested_frames_of_a_cache_are_read(folder: Path, monkeypatch: py
         one.latest("timeline")
         one.latest("numbers", draft=False)
         one.send(kind="against", name="cache.usda")
-        assert len(one.receive("timeline", against="cache.usda")["beside"]) == 300
+        assert len(one.receive("timeline", against="cache.usda")["against_frames"]) == 300
         one.send(kind="watch", against=[99])
         assert one.receive("frame")["layer"] == "against" and read == [17, 250, 99]
 

@@ -45,7 +45,7 @@ def test_a_take_of_other_settings_is_kept_compared_and_its_settings_are_used_aga
         assert "strands.bend_scale" not in one.latest("compared", side="b", name="run 2")["settings"]
         assert one.latest("compared", side="a", name="now")["settings"]["strands.bend_scale"] == "0.02"
         timeline = one.latest("timeline", against="run 2")
-        assert timeline["beside"].tolist() == [1, 2, 3, 4] and np.isfinite(timeline["beside_swings"][3:]).any()
+        assert timeline["against_frames"].tolist() == [1, 2, 3, 4] and np.isfinite(timeline["against_swings"][3:]).any()
         assert np.array_equal(frame(one, 4.0, "against")["points"], first)
         one.send(kind="use_run", run=2)
         assert one.receive("document", file="shot")["text"] == before

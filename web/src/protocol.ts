@@ -735,11 +735,11 @@ export interface Timeline {
   against: string;
   kept: KeptRun[];
   frames: Float64Array;
-  beside: Float64Array;
+  against_frames: Float64Array;
   runs: Int32Array;
   stale: Uint8Array;
   swings: Float32Array;
-  beside_swings: Float32Array;
+  against_swings: Float32Array;
 }
 
 /** A look that is compared; ``a`` is the open recipe. */

@@ -105,7 +105,7 @@ class Hairs:
         return origin
 
     def deformation(self, scalp_points: NDArray) -> dict[str, Any]:
-        """Inputs of the deformation (src/ringlet/groom/hairs.h) besides the locks, for a deformed scalp.
+        """Inputs of the deformation (src/ringlet/groom/hairs.h) other than the locks, for a deformed scalp.
 
         ``axis`` (locks, 3) and ``root`` (hairs, 3) [m] follow the scalp; the other arrays are constant.
         """

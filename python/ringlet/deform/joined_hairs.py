@@ -70,7 +70,7 @@ class JoinedHairs:
         *,
         buffer: NDArray[np.float32] | None = None,
     ) -> NDArray[np.uint8]:
-        """Fractions of the offsets from the locks that remain beside surfaces, as ``Hairs.offset_fractions``."""
+        """Fractions of the offsets from the locks that remain outside of surfaces, as ``Hairs.offset_fractions``."""
         end, found = 0, []
         for (hairs, rows), own in zip(self._with_points(), deformation["members"], strict=True):
             begin, end = end, end + int(hairs.curves.offsets[-1])

@@ -128,7 +128,7 @@ class Comparer:
 
     def _clear(self, side: Side) -> None:
         """Removes the groom on a side."""
-        self._viewport.clear_beside(side)
+        self._viewport.clear_compared(side)
         self._shown.pop(side, None)
         if side in self._workers:
             self._workers[side].cancel()

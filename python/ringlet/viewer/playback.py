@@ -21,7 +21,7 @@ from ringlet.viewer.display_groom import DisplayGroom
 from ringlet.viewer.files import Files
 from ringlet.viewer.frame_cache import FileFrames, FrameSource, ReplacedError, WatchedFile
 from ringlet.viewer.publisher import Publisher
-from ringlet.viewer.runs import Take, TakeBeside
+from ringlet.viewer.runs import ComparedTake, Take
 from ringlet.viewer.scene import FrameState, ReadFrame, open_frames
 from ringlet.viewer.simulation import Simulation
 from ringlet.viewer.stage import Stage
@@ -52,7 +52,7 @@ class Playback:
     ) -> None:
         self._files, self._publisher, self._viewport = files, publisher, viewport
         self._call, self._failed = call, failed
-        self._shown, self._beside = OpenFrames(), OpenFrames()
+        self._shown, self._compared_frames = OpenFrames(), OpenFrames()
         self._stage: Stage | None = None
         self._against = ""
         self._compared: protocol.Compared | None = None
@@ -72,7 +72,7 @@ class Playback:
         """Stops the simulation and closes the open files."""
         self._simulation.stop(patience=1.0)
         self._shown.close()
-        self._beside.close()
+        self._compared_frames.close()
 
     def frame_sources(self, message: protocol.Watch) -> dict[str, Callable[[], bytes | None]]:
         """Functions that make the messages of the requested frames that exist, by subject."""
@@ -87,7 +87,7 @@ class Playback:
 
     def _source_of(self, layer: str, frame: float) -> FrameSource | None:
         """What has a frame now; None where it does not exist."""
-        source = self._shot if layer == "shot" else self._beside.source
+        source = self._shot if layer == "shot" else self._compared_frames.source
         return source if source is not None and (source.frames == frame).any() else None
 
     def _frame(self, layer: str, frame: float) -> bytes | None:
@@ -105,7 +105,7 @@ class Playback:
 
     def _reopen(self, source: FrameSource) -> None:
         """Reopens a replaced file and announces its frames; ignores a source that is no longer open."""
-        for opened in (self._shown, self._beside):
+        for opened in (self._shown, self._compared_frames):
             if opened.source is not source:
                 continue
             self._replaced += 1
@@ -113,7 +113,7 @@ class Playback:
                 opened.reopen()
             except UserError as error:
                 self._failed(str(error))
-                if opened is self._beside:
+                if opened is self._compared_frames:
                     self.set_comparison(protocol.Against())
             self.publish_timeline()
 
@@ -144,8 +144,8 @@ class Playback:
         """Sets the groom of the shot. Another groom has other frames; those of the last grooms come back with them."""
         if self._stage is None or self._stage.groom.locks.points is not display.groom.locks.points:
             self._switch_simulation(display)
-            if not isinstance(self._beside.source, TakeBeside):
-                self._beside.close()
+            if not isinstance(self._compared_frames.source, ComparedTake):
+                self._compared_frames.close()
                 self._against = ""
             try:
                 self._viewport.show_bodies(self._files.shot, display.groom)
@@ -183,12 +183,12 @@ class Playback:
 
         Raises UserError before the groom is made, for a file that is no cache of that groom, and for no kept take.
         """
-        self._beside.close()
-        self._viewport.clear_beside()
+        self._compared_frames.close()
+        self._viewport.clear_compared()
         self._against, settings = "", {}
         if message.run:
             take, display = self._take(message.run)
-            self._beside.source = TakeBeside(take)
+            self._compared_frames.source = ComparedTake(take)
             self._against, settings = f"run {message.run}", settings_of_text(take.last.text)
             self._viewport.show(display, "b")
         elif message.name:
@@ -196,7 +196,7 @@ class Playback:
             if stage is None or display is None:
                 raise UserError("shot: its groom is not made yet; wait until it is seen")
             file = self._files.project.inside(message.name, "against")
-            self._beside.open(file, display, partial(stage.frame, "against"))
+            self._compared_frames.open(file, display, partial(stage.frame, "against"))
             self._against = message.name
             self._viewport.show(display, "b")
         compared = protocol.Compared(side="b", name=self._against, settings=settings)
@@ -251,18 +251,18 @@ class Playback:
         )
         take = simulation.take if runs else Take({})
         frames = take.frames if runs or self._shown.source is None else self._shown.source.frames
-        beside = self._beside.source
-        swings = beside.take.swings if isinstance(beside, TakeBeside) else np.empty((0, 3))
+        compared = self._compared_frames.source
+        swings = compared.take.swings if isinstance(compared, ComparedTake) else np.empty((0, 3))
         self._publisher.publish(
             "timeline",
             pack(
                 timeline,
                 frames=frames,
-                beside=beside.frames if beside else np.empty(0),
+                against_frames=compared.frames if compared else np.empty(0),
                 runs=take.runs if runs else np.zeros(len(frames)),
                 stale=take.stale(self._files.shot) if runs else np.zeros(len(frames)),
                 swings=take.swings,
-                beside_swings=swings,
+                against_swings=swings,
             ),
         )
         if runs:
@@ -271,7 +271,7 @@ class Playback:
 
     def _publish_settings(self, now: protocol.Compared) -> None:
         """Publishes the settings of the shot while an earlier take is compared with it."""
-        if isinstance(self._beside.source, TakeBeside) and now != self._compared:
+        if isinstance(self._compared_frames.source, ComparedTake) and now != self._compared:
             self._publisher.publish("a/none", pack(now))
             self._compared = now
 

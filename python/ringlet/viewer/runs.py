@@ -98,7 +98,7 @@ class Take:
         return Take({**self.made, frame: run})
 
 
-class TakeBeside:
+class ComparedTake:
     """The frames of a take as those that the timeline is compared with."""
 
     def __init__(self, take: Take) -> None:

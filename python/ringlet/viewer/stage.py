@@ -54,9 +54,9 @@ class Stage:
             deformation = self.hairs.deformation(corners)
             order = spread_order(deformation["first"])
             axis, root = deformation["axis"], deformation["root"][order]
-            beside = [(at, body.mesh.triangles) for at, body in zip(bodies, self.bodies, strict=True)]
+            surfaces = [(at, body.mesh.triangles) for at, body in zip(bodies, self.bodies, strict=True)]
             with self._lock:
-                left = self.hairs.offset_fractions(points, deformation, beside, buffer=self._buffer)[order]
+                left = self.hairs.offset_fractions(points, deformation, surfaces, buffer=self._buffer)[order]
         drawn = np.flatnonzero((left < 255).any(axis=1))
         shown, contact, depth = shown_statistics(statistics), np.empty(0), np.empty(0)
         if motion is not None:

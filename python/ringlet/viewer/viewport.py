@@ -81,7 +81,7 @@ class Viewport:
             self._publish_bodies(shot_meshes(shot, groom))
             self._shot_inputs = inputs
 
-    def clear_beside(self, side: str = "b") -> None:
+    def clear_compared(self, side: str = "b") -> None:
         """Removes the groom on a side."""
         self._publisher.clear(f"{side}/")
         self._layouts.pop(side, None)

@@ -79,7 +79,7 @@ export class SwingChart {
     this.use.hidden = !compared;
     this.use.disabled = !role.leads;
     const tips = { frames: timeline.frames, swings: timeline.swings, number: 0 };
-    const others = { frames: timeline.beside, swings: timeline.beside_swings, number: 0 };
+    const others = { frames: timeline.against_frames, swings: timeline.against_swings, number: 0 };
     const roots = { ...tips, number: 1 };
     const kept = { ...tips, number: 2 };
     const top = Math.max(1e-3, ...[tips, roots, others].flatMap((one) => values(one)).map(([, value]) => value));

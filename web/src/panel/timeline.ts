@@ -36,7 +36,7 @@ export class TimelineBar {
   private readonly asked: Record<Layer, Set<number>> = { shot: new Set(), against: new Set() };
   private frame = 1;
   private key = -1;
-  private beside = "";
+  private compared = "";
   private drawn: Partial<Record<Layer, Frame>> = {};
   private playing = 0;
   /** First and last frame of what is played; none: that of the shot. */
@@ -140,7 +140,7 @@ export class TimelineBar {
 
   private there(layer: Layer): ArrayLike<number> {
     const { timeline } = this.model;
-    return (layer === "shot" ? timeline?.frames : timeline?.beside) ?? [];
+    return (layer === "shot" ? timeline?.frames : timeline?.against_frames) ?? [];
   }
 
   /** The frame of a layer that is seen: the nearest that there is. */
@@ -203,8 +203,8 @@ export class TimelineBar {
       this.key = timeline.key;
       for (const layer of LAYERS) this.drop(layer);
     }
-    if (timeline.against !== this.beside) {
-      this.beside = timeline.against;
+    if (timeline.against !== this.compared) {
+      this.compared = timeline.against;
       this.drop("against");
     }
     const ready = timeline.frames.at(-1);

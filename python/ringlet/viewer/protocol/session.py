@@ -157,7 +157,7 @@ class Timeline(Message):
     runs:  number of the run that made each frame, from 1; 0 for frames of a file
     stale: 1 for frames of other settings than the present ones
     kept:  earlier takes, with other settings or of other grooms
-    swings, beside_swings: three numbers a frame, for frames of runs: mean speed of tips and of roots [m/s], and the
+    swings, against_swings: three numbers a frame, for frames of runs: mean speed of tips and of roots [m/s], and the
            estimated fraction of the converged motion; NaN where it is not known
     """
 
@@ -173,11 +173,11 @@ class Timeline(Message):
     kept: list[KeptRun] = Field(default_factory=list)
     arrays: ClassVar[dict[str, str]] = {
         "frames": "f8",
-        "beside": "f8",
+        "against_frames": "f8",
         "runs": "i4",
         "stale": "u1",
         "swings": "f4",
-        "beside_swings": "f4",
+        "against_swings": "f4",
     }
 
 
