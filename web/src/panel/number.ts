@@ -58,11 +58,12 @@ export class NumberInput {
   /** Drags on an element change the value: a step every few pixels, a tenth of it with Shift. */
   scrubbedBy(handle: HTMLElement): void {
     handle.classList.add("scrubs");
-    let [x, start, moved] = [0, 0, false];
-    let held = false;
+    let [x, start, scrubbed] = [0, 0, 0];
+    let [held, moved] = [false, false];
     handle.addEventListener("pointerdown", (event) => {
       if (event.button !== 0 || this.value === null) return;
-      [x, start, moved, held] = [event.clientX, this.value, false, true];
+      [x, start, scrubbed] = [event.clientX, this.value, this.value];
+      [held, moved] = [true, false];
       handle.setPointerCapture(event.pointerId);
     });
     handle.addEventListener("pointermove", (event) => {
@@ -70,10 +71,12 @@ export class NumberInput {
       const by = event.clientX - x;
       if (!moved && Math.abs(by) < STILL) return;
       moved = true;
-      this.scrub(this.stepped(start, Math.round(by / PIXELS), event.shiftKey), false);
+      scrubbed = this.stepped(start, Math.round(by / PIXELS), event.shiftKey);
+      this.scrub(scrubbed, false);
     });
+    // Answers to earlier moves arrive during the drag and set the value: what was scrubbed last counts.
     const release = () => {
-      if (held && moved) this.scrub(this.value ?? start, true);
+      if (held && moved) this.scrub(scrubbed, true);
       held = false;
     };
     for (const name of ["pointerup", "pointercancel", "lostpointercapture"] as const) handle.addEventListener(name, release);
