@@ -21,7 +21,9 @@ from ringlet import validate
 sys.path.insert(0, str(Path(__file__).parents[1] / "tools" / "proof"))
 from releases import PRESCRIBED, scenes
 
-FRAMES = Path(__file__).parents[1] / "bench" / "results" / "frames.json"
+RESULTS = Path(__file__).parents[1] / "bench" / "results"
+FRAMES = RESULTS / "frames.json"
+TIPS = RESULTS / "tips_threads_1.json"
 RESOLUTION = re.compile(r"(?P<curve>.*), (?P<n>\d+) (edges|vertices a turn)$")
 
 
@@ -75,6 +77,33 @@ def write_memory(path: Path) -> None:
     axes.set_ylabel("resident memory [MB]", fontsize=9)
     axes.grid(alpha=0.3)
     axes.legend(fontsize=8, frameon=False, loc="lower right")
+    with replacing(path) as aside:
+        figure.savefig(aside)
+
+
+def write_tips(path: Path) -> None:
+    """How far the median tip is from its place in the first frame: without contact, converged, and at settings."""
+    result = json.loads(TIPS.read_text())["result"]
+    converged = result["params"]["converged"]
+    figure = Figure(figsize=(8, 3.4), layout="constrained")
+    axes = figure.subplots()
+    colors = iter(("#d9a441", "#8c3b2a", "#2a5b8c"))
+    for name, run in result["runs"].items():
+        iterations = name.split("/")[0]
+        frames = 1 + np.arange(len(run["tips_mm"]))
+        if name == "free":
+            axes.plot(frames, run["tips_mm"], ":", color="gray", lw=1.5, label="without contact")
+        elif name == converged:
+            axes.plot(
+                frames, run["tips_mm"], color="black", lw=2.5, alpha=0.6, label=f"converged, {iterations} iterations"
+            )
+        else:
+            axes.plot(frames, run["tips_mm"], color=next(colors), lw=1.2, label=f"{iterations} iterations")
+    axes.set_ylim(0, None)
+    axes.set_xlabel("frame", fontsize=9)
+    axes.set_ylabel("distance of the median tip [mm]", fontsize=9)
+    axes.grid(alpha=0.3)
+    axes.legend(fontsize=8, frameon=False)
     with replacing(path) as aside:
         figure.savefig(aside)
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ringlet.data.groom import Groom
     from ringlet.shot.shot import Shot
 
-__all__ = ["converge", "convergence_table", "lock_motion", "write_convergence"]
+__all__ = ["converge", "convergence_table", "lock_motion", "tip_distance", "write_convergence"]
 
 FRAMES = 8  # that are compared by default
 
@@ -73,5 +73,16 @@ def lock_motion(points: NDArray[np.float64], offsets: NDArray[np.integer]) -> li
     offsets: offsets of the locks, shape (locks + 1,)
     """
     from ringlet.sim.convergence import lock_motion as measure
+
+    return measure(points, offsets)
+
+
+def tip_distance(points: NDArray[np.float64], offsets: NDArray[np.integer]) -> list[float]:
+    """Median distance of the tips from their places in the first frame, relative to all roots, by frame [m].
+
+    points:  positions [m], shape (frames, n, 3)
+    offsets: offsets of the locks, shape (locks + 1,)
+    """
+    from ringlet.sim.convergence import tip_distance as measure
 
     return measure(points, offsets)

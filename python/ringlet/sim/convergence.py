@@ -62,7 +62,6 @@ def converge(
 def _compared(
     runs: Mapping[tuple[int, float], _Played], offsets: NDArray[np.integer]
 ) -> dict[tuple[int, float], Trial]:
-    roots, ends = offsets[:-1], offsets[1:] - 1
     trials = {}
     for (newton, tolerance), played in runs.items():
         points = np.array(played.points)
@@ -70,7 +69,7 @@ def _compared(
             newton,
             tolerance,
             motion=lock_motion(points, offsets),
-            tips=[float(np.median(_moved(points[0], now, roots)[ends])) for now in points],
+            tips=tip_distance(points, offsets),
             stretch=max(frame["max_stretch"] for frame in played.statistics),
             cpu_ms=float(np.median([frame["cpu_ms"] for frame in played.statistics])),
             off=float(np.linalg.norm(points - np.array(runs[CONVERGED].points), axis=2)[1:].mean()),
@@ -92,6 +91,15 @@ def lock_motion(points: NDArray[np.float64], offsets: NDArray[np.integer]) -> li
         float(np.median(np.maximum.reduceat(_moved(before, after, roots), roots)))
         for before, after in itertools.pairwise(points)
     ]
+
+
+def tip_distance(points: NDArray[np.float64], offsets: NDArray[np.integer]) -> list[float]:
+    """Distance of the tips from where they are in the first frame, relative to the rigid motion of all roots [m].
+
+    The median over locks, by frame. Takes what `lock_motion` takes.
+    """
+    roots, ends = offsets[:-1], offsets[1:] - 1
+    return [float(np.median(_moved(points[0], now, roots)[ends])) for now in points]
 
 
 def _moved(before: NDArray[np.float64], after: NDArray[np.float64], roots: NDArray[np.integer]) -> NDArray[np.float64]:
