@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 from check_words import LONGEST, WORD
 
-PAGES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/**/*.md")
+PAGES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "bench/README.md", "examples/README.md", "docs/**/*.md")
 # Pages that still wait for their rewrite and are not checked. The list only shrinks.
 WAITING: set[str] = {
     "docs/curls.md",
