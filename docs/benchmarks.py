@@ -54,7 +54,7 @@ def all_runs(runs: dict[str, Any]) -> Iterator[str]:
     for run in runs.values():
         result = run["result"]
         if "cpu_ms" not in result:
-            continue  # of memory: docs/hardening.md
+            continue  # of memory: docs/robustness.md
         cpu = result["cpu_ms"]
         contacts = f"{result['contacts']:,.0f}" if result.get("contacts") else ""
         yield (

@@ -26,6 +26,7 @@ check "python format" $bin/ruff format --quiet --check .
 check "python types" types
 check "arrows" $bin/python tools/check_architecture.py
 check "words" $bin/python tools/check_words.py
+check "prose" $bin/python tools/check_prose.py
 check "page" tools/web.sh check
 check "protocol" $bin/python tools/make_protocol.py --check
 check "c++ format" $bin/clang-format --dry-run -Werror "${cpp[@]}"

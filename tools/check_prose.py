@@ -1,0 +1,131 @@
+"""Checks the length of paragraphs and sentences in the documents.
+
+Usage: python tools/check_prose.py [--count] [PAGE ...]. Checks all pages that are held to it if none is named. Prints
+one line per hit and exits with 1 if there is one; --count prints the hits of each page.
+
+A paragraph is a block of lines of text or one list item. Code, tables, headings, directives, HTML, formulas between
+dollar signs, images and the targets of links do not count; inline code counts as one word.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import sys
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+from check_words import LONGEST, WORD
+
+PAGES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "bench/README.md", "examples/README.md", "docs/**/*.md")
+# Pages that still wait for their rewrite and are not checked. The list only shrinks.
+WAITING: set[str] = {
+    "docs/curls.md",
+    "docs/groom.md",
+    "docs/pictures.md",
+    "docs/styles.md",
+    "docs/viewer.md",
+}
+LONGEST_PARAGRAPH = 120  # words
+SENTENCE_END = re.compile(r"[.!?][)\"'’”*_]*\s")
+
+FENCE = re.compile(r"\s*(?P<fence>`{3,}|~{3,})")
+NO_TEXT = re.compile(r"\s*(#|\||<|:::|\$\$|\[[^\]]+\]: |:[\w-]+:)|\s*([-*_] ?){3,}$")
+ITEM = re.compile(r"\s*(?:[-*+]|\d+[.)]|:)\s+|\s*> ?")
+INLINE = (
+    (re.compile(r"(`+).+?\1", re.DOTALL), "code"),
+    (re.compile(r"\$[^$\s][^$]*\$"), " "),
+    (re.compile(r"!\[[^\]]*\]\([^)]*\)"), " "),
+    (re.compile(r"\]\([^)]*\)"), "]"),
+    (re.compile(r"<[^>\s][^>]*>"), " "),
+)
+
+
+class Paragraph(NamedTuple):
+    """A paragraph and the line on which it begins."""
+
+    line: int
+    text: str
+
+
+def text_lines(page: str) -> Iterator[tuple[int, str]]:
+    """Number and text of each line; what is no text is an empty line."""
+    fence = ""
+    toctree = False
+    for number, line in enumerate(page.splitlines(), 1):
+        match = FENCE.match(line)
+        if fence:
+            is_end = match and match["fence"].startswith(fence) and not line.strip(" `~")
+            fence = "" if is_end else fence
+            yield number, ""
+        elif toctree or line.startswith(":::{toctree}"):
+            toctree = line.strip() != ":::"
+            yield number, ""
+        elif match:
+            fence = match["fence"]
+            yield number, ""
+        else:
+            yield number, "" if NO_TEXT.match(line) else line
+
+
+def paragraphs(page: str) -> Iterator[Paragraph]:
+    """The paragraphs of a page, without markup."""
+    block = Paragraph(0, "")
+    for number, line in [*text_lines(page), (0, "")]:
+        begins = ITEM.match(line)
+        if block.text and (begins or not line.strip()):
+            yield block
+            block = Paragraph(0, "")
+        if line.strip():
+            text = line[begins.end() :] if begins else line
+            block = Paragraph(block.line or number, f"{block.text}\n{text}" if block.text else text)
+
+
+def plain(text: str) -> str:
+    """The text with as many lines, inline code as one word, and without formulas, images and targets of links."""
+    for found, instead in INLINE:
+        text = found.sub(lambda match, instead=instead: instead + "\n" * match[0].count("\n"), text)
+    return text
+
+
+def hits(page: str) -> Iterator[tuple[int, str]]:
+    """Line and complaint of each paragraph and each sentence that is too long."""
+    for line, text in paragraphs(page):
+        words = plain(text)
+        if (count := len(WORD.findall(words))) > LONGEST_PARAGRAPH:
+            yield line, f"paragraph of {count} words → at most {LONGEST_PARAGRAPH}"
+        begin = 0
+        for end in [*(match.end() for match in SENTENCE_END.finditer(words)), len(words)]:
+            if (count := len(WORD.findall(words, begin, end))) > LONGEST:
+                yield line + words.count("\n", 0, begin), f"sentence of {count} words → at most {LONGEST}"
+            begin = end
+
+
+def pages(root: Path) -> list[str]:
+    """All pages of the tree, relative to it, without those that are generated."""
+    found = {page.relative_to(root).as_posix() for pattern in PAGES for page in root.glob(pattern)}
+    return sorted(page for page in found if not page.startswith(("docs/_build/", "docs/_generated/")))
+
+
+def main() -> int:
+    """Prints the hits of this tree."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("pages", nargs="*", metavar="PAGE")
+    parser.add_argument("--count", action="store_true")
+    options = parser.parse_args()
+    root = Path(__file__).parents[1]
+    chosen = options.pages or [page for page in pages(root) if page not in WAITING]
+    found = [(page, *hit) for page in chosen for hit in hits((root / page).read_text())]
+    lines = [f"{page}:{line}: {complaint}\n" for page, line, complaint in found]
+    if options.count:
+        count = Counter((page, complaint.split()[0]) for page, _, complaint in found)
+        pages_hit = sorted({page for page, _, _ in found})
+        lines = [f"{p}: {count[p, 'paragraph']} paragraphs, {count[p, 'sentence']} sentences\n" for p in pages_hit]
+    print("".join(lines), end="")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
