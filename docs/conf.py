@@ -9,7 +9,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 from benchmarks import write_benchmarks
 from docstrings import as_list
 from figures import write_figures
-from plots import write_convergence, write_memory, write_release
+from plots import write_convergence, write_memory, write_release, write_tips
 from reference import write_references
 from theory import write_theory
 
@@ -40,6 +40,7 @@ def setup(app):
     write_convergence(Path(app.srcdir) / "_generated" / "convergence.svg")
     write_memory(Path(app.srcdir) / "_generated" / "memory.svg")
     write_release(Path(app.srcdir) / "_generated" / "release.svg")
+    write_tips(Path(app.srcdir) / "_generated" / "tips.svg")
     write_theory(Path(app.srcdir) / "_generated")
     write_figures(Path(app.srcdir) / "_generated")
     app.connect("autodoc-process-docstring", as_list)

@@ -1,6 +1,6 @@
 """Draws the figures that open the pages of explanation: strand, cloth, contact and speed, when the documents are built.
 
-python docs/figures.py makes docs/images/proof.png, which takes a minute: scenes of the contact proof before and after.
+python docs/figures.py makes two pictures of the contact proof in docs/images, which takes a minute: proof.png and pinch.png.
 """
 
 from __future__ import annotations
@@ -164,6 +164,28 @@ def proof() -> Figure:
     return figure
 
 
+def pinch() -> Figure:
+    """A ball goes through the hair of one side into a head; hair of the other side does what it does without the ball."""
+    sys.path.insert(0, str(Path(__file__).parents[1] / "tools" / "proof"))
+    import pinches
+
+    played, alone = pinches.ball("by itself"), pinches.ball(None)
+    frames = (1, 9, 15, 21, 30)
+    figure = Figure(figsize=(13, 2.0), layout="constrained")
+    for axes, frame in zip(figure.subplots(1, len(frames), sharex=True, sharey=True), frames, strict=True):
+        shift = 4e-3 * frame  # of the head along z, towards the viewer
+        axes.add_patch(Circle((0, 0), pinches.RADIUS, color="#eee6de"))
+        axes.add_patch(Circle((0.3 - 0.012 * min(frame, 30 - frame), 0), 0.05, fill=False, color=GREY))
+        for scene, near, far in ((alone, "none", GREY), (played, RED, BLUE)):
+            for k, lock in enumerate(scene.positions[frame - 1].reshape(2 * pinches.NEAR, -1, 3)):
+                x, y = (lock - [0.0, 0.0, shift])[:, :2].T
+                axes.plot(x, y, color=near if k < pinches.NEAR else far, lw=1.6 if scene is alone else 0.5)
+        axes.set_title(f"frame {frame}", fontsize=9)
+        axes.set(aspect="equal", xlim=(-0.16, 0.36), ylim=(-0.1, 0.1))
+        axes.axis("off")
+    return figure
+
+
 def draw_strands(axes: Axes, points: np.ndarray, offsets: np.ndarray) -> None:
     """Strands in an oblique view, those in front over those behind."""
     view = points @ np.array([[1.0, 0.0], [0.0, 1.0], [-0.35, 0.25]])
@@ -203,4 +225,5 @@ def speed() -> Figure:
 
 
 if __name__ == "__main__":
-    proof().savefig(Path(__file__).parent / "images" / "proof.png", dpi=80)
+    for picture in (proof, pinch):
+        picture().savefig(Path(__file__).parent / "images" / f"{picture.__name__}.png", dpi=80)
