@@ -1,6 +1,6 @@
 """Draws the figures that open the pages of explanation: strand, cloth, contact and speed, when the documents are built.
 
-python docs/figures.py makes two pictures of the contact proof in docs/images, which takes a minute: proof.png and pinch.png.
+python docs/figures.py makes proof.png and pinch.png in docs/images, of the contact proof, which takes two minutes.
 """
 
 from __future__ import annotations
@@ -165,7 +165,7 @@ def proof() -> Figure:
 
 
 def pinch() -> Figure:
-    """A ball goes through the hair of one side into a head; hair of the other side does what it does without the ball."""
+    """A ball goes into a head through the hair of one side; hair of the other side is as without the ball."""
     sys.path.insert(0, str(Path(__file__).parents[1] / "tools" / "proof"))
     import pinches
 
