@@ -14,6 +14,7 @@ import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from PIL import Image
+
 from ringlet import build_groom, read_recipe, read_shot, simulate
 
 SHOT = Path(__file__).parents[1] / "examples" / "child" / "nod.shot.toml"
