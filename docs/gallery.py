@@ -39,6 +39,7 @@ PAGE_HEAD = """# Gallery
 Styles on two heads in one light. The child and the adult are made by the code in `examples/child` and `examples/adult`.
 Grooms have about 120 hairs per cm² of scalp or more, also in braids, twists, locs. Pictures are path-traced: close-ups
 with all hairs, heads with a third of them, each three times as wide, which is a third of a pixel.
+Pictures that are not rendered yet are left out.
 `python docs/gallery.py` makes the pictures, and this page from `docs/gallery.toml`.
 
 A recipe fits the other head with two lines, as the middle of the skull and the names of regions are the same:
@@ -51,6 +52,16 @@ extends = "../looks/bob.recipe.toml"
 file = "../adult/head.usdc"
 mesh = "/adult/skin"
 ```
+"""
+
+PAGE_FOOT = """
+## What a groomer would still refuse
+
+- Cornrows and flat twists: the lowest row, above the ear, gathers a wide section, whose hair reads as loose strokes.
+- Locs: at the parting, skin shows on the far side of each brick, where hair is drawn away from it.
+- Rounded afro: over the ears it is hollow, and at the nape it hangs lower than a ball.
+- Wash-and-go: highlights of coils read as beads.
+- Box braids: all tails end at one height.
 """
 
 
@@ -204,7 +215,7 @@ def write_page(styles: list[Style]) -> None:
     ]
     rows = [cells[first : first + COLUMNS] for first in range(0, len(cells), COLUMNS)]
     overview = table([row + [""] * (COLUMNS - len(row)) for row in rows])
-    (DOCS / "gallery.md").write_text("\n".join([PAGE_HEAD, overview, *map(section, styles)]))
+    (DOCS / "gallery.md").write_text("\n".join([PAGE_HEAD, overview, *map(section, styles), PAGE_FOOT]))
 
 
 def section(style: Style) -> str:
