@@ -31,12 +31,14 @@ ROOT, FOLDER = DOCS.parent, DOCS / "images" / "gallery"
 HEADS = ("child", "adult")
 COLUMNS = 6  # of small pictures
 FOCAL_LENGTH, AWAY = 0.085, 1.9  # of the lens; from the camera to what it looks at [m]
+THINNED = 0.33  # part of the hairs in pictures of a head: each is three times as wide, a third of a pixel
 
 
 PAGE_HEAD = """# Gallery
 
 Styles on two heads in one light. The child and the adult are made by the code in `examples/child` and `examples/adult`.
-Pictures are path-traced with all hairs of the groom: about 120 per cm² of scalp or more, also in braids, twists, locs.
+Grooms have about 120 hairs per cm² of scalp or more, also in braids, twists, locs. Pictures are path-traced: close-ups
+with all hairs, heads with a third of them, each three times as wide, which is a third of a pixel.
 Pictures that are not rendered yet are left out.
 `python docs/gallery.py` makes the pictures, and this page from `docs/gallery.toml`.
 
@@ -50,6 +52,16 @@ extends = "../looks/bob.recipe.toml"
 file = "../adult/head.usdc"
 mesh = "/adult/skin"
 ```
+"""
+
+PAGE_FOOT = """
+## What a groomer would still refuse
+
+- Cornrows and flat twists: the lowest row, above the ear, gathers a wide section, whose hair reads as loose strokes.
+- Locs: at the parting, skin shows on the far side of each brick, where hair is drawn away from it.
+- Rounded afro: over the ears it is hollow, and at the nape it hangs lower than a ball.
+- Wash-and-go: highlights of coils read as beads.
+- Box braids: all tails end at one height.
 """
 
 
@@ -89,10 +101,10 @@ def read_styles() -> list[Style]:
 
 
 def read_style(entry: dict, common: dict) -> Style:
-    """A style with its cameras: one of each head, the large one first, and one close-up."""
+    """A style with its cameras: one of each head that it fits, the large one first, and one close-up."""
     shots = {}
-    order = sorted(HEADS, key=lambda head: head != entry["head"])
-    for head, kind in zip(order, ("large", "other"), strict=True):
+    order = sorted(entry.get("heads", HEADS), key=lambda head: head != entry["head"])
+    for head, kind in zip(order, ("large", "other"), strict=False):
         camera = common["head"] | common[kind] | entry.get("camera", {}) | entry.get(f"camera_{head}", {})
         shots[head] = (head, shot(camera))
     shots["close"] = (order[0], shot(common["close"] | entry["close"]))
@@ -149,26 +161,30 @@ def picture_path(style: Style, name: str) -> Path:
     return FOLDER / f"{style.name}_{name}.jpg"
 
 
-def render(style: Style, names: list[str], folder: Path, engine: str, fraction: float = 1.0) -> None:
-    """Renders pictures of a style, head by head; ``fraction`` of the hairs, each wider."""
-    for head in HEADS:
-        chosen = [name for name in names if style.shots[name][0] == head]
-        if not chosen:
-            continue
-        recipe, groom, hair = (folder / f"{style.name}.{kind}" for kind in ("recipe.toml", "usdc", "hair.usdc"))
-        recipe.write_text(variant(style.recipe, head))
-        ringlet.write_groom(ringlet.build_groom(recipe), groom)
+def render(style: Style, names: list[str], engine: str) -> None:
+    """Renders pictures of a style."""
+    for name in names:
+        head, camera = style.shots[name]
+        mark = digest(style.recipe, head, camera)  # before a recipe is edited while this runs
+        fraction = 1.0 if name == "close" else THINNED
+        picture = photograph(variant(style.recipe, head), camera, engine, fraction)
+        picture.save(picture_path(style, name), quality=84, comment=mark.encode())
+        print(picture_path(style, name).relative_to(ROOT), flush=True)
+
+
+def photograph(recipe: str, camera: Shot, engine: str, fraction: float = 1.0) -> Image.Image:
+    """Picture of the hair of a recipe's text; ``fraction`` of the hairs, each wider."""
+    with tempfile.TemporaryDirectory() as folder:
+        text, groom, hair, still = (Path(folder) / name for name in ("a.recipe.toml", "a.usdc", "a.hair.usdc", "a.png"))
+        text.write_text(recipe)
+        ringlet.write_groom(ringlet.build_groom(text), groom)
         ringlet.write_hairs(groom, hair, fraction=fraction, wider=fraction < 1.0)
-        for name in chosen:
-            camera = style.shots[name][1]
-            add_camera(hair, name, camera)
-            still = folder / "still.png"
-            width, height = camera.size
-            samples, at = camera.samples, f"/{name}"
-            ringlet.write_still(hair, still, width=width, height=height, samples=samples, camera=at, engine=engine)
-            mark = digest(style.recipe, head, camera)
-            Image.open(still).convert("RGB").save(picture_path(style, name), quality=84, comment=mark.encode())
-            print(picture_path(style, name).relative_to(ROOT), flush=True)
+        add_camera(hair, "camera", camera)
+        width, height = camera.size
+        ringlet.write_still(
+            hair, still, width=width, height=height, samples=camera.samples, camera="/camera", engine=engine
+        )
+        return Image.open(still).convert("RGB")
 
 
 def add_camera(stage_file: Path, name: str, camera: Shot) -> None:
@@ -199,19 +215,19 @@ def write_page(styles: list[Style]) -> None:
     ]
     rows = [cells[first : first + COLUMNS] for first in range(0, len(cells), COLUMNS)]
     overview = table([row + [""] * (COLUMNS - len(row)) for row in rows])
-    (DOCS / "gallery.md").write_text("\n".join([PAGE_HEAD, overview, *map(section, styles)]))
+    (DOCS / "gallery.md").write_text("\n".join([PAGE_HEAD, overview, *map(section, styles), PAGE_FOOT]))
 
 
 def section(style: Style) -> str:
     """Heading, pictures and recipe of a style; its first picture is the large one."""
-    first, other, _ = style.shots
+    first, *others = (name for name in style.shots if name != "close")
     recipe = style.recipe.relative_to(ROOT)
     return f"""
 ## {style.title}
 
 {style.text} [`{recipe}`](../{recipe})
 
-{table([[linked(style, name) for name in (first, "close", other)]])}
+{table([[linked(style, name) for name in (first, "close", *others)]])}
 
 <details><summary>Recipe</summary>
 
@@ -256,9 +272,8 @@ def main() -> None:
     styles = read_styles()
     FOLDER.mkdir(exist_ok=True)
     wanted = [] if chosen.page else [style for style in styles if not chosen.styles or style.name in chosen.styles]
-    with tempfile.TemporaryDirectory() as folder:
-        for style, names in due(wanted, chosen.again, chosen.first):
-            render(style, names, Path(folder), chosen.engine)
+    for style, names in due(wanted, chosen.again, chosen.first):
+        render(style, names, chosen.engine)
     write_page(styles)  # with the pictures that are there now
 
 

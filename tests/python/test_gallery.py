@@ -26,6 +26,7 @@ from ringlet.groom import hairs_per_cm2, make_hairs, read_recipe
 ROOT = Path(__file__).parents[2]
 STYLES = {entry["name"]: entry for entry in tomllib.loads((ROOT / "docs/gallery.toml").read_text())["style"]}
 HEADS = ("child", "adult")
+ON_SCALPS = [(name, entry["head"]) for name, entry in STYLES.items() if "heads" not in entry]  # those of any head
 LOCKS = 160  # of loose hair
 LOCK_RADIUS = 3e-3  # of what a lock hides [m]
 HIDDEN_FACE = 0.1  # largest part of eyes and nose that locks hide from the front
@@ -42,7 +43,7 @@ def recipe_text(name: str, head: str) -> str:
     )
 
 
-@pytest.fixture(scope="module", params=[(name, entry["head"]) for name, entry in STYLES.items()], ids=lambda p: p[0])
+@pytest.fixture(scope="module", params=ON_SCALPS, ids=lambda p: p[0])
 def style(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, str, Groom]:
     name, head = request.param
     path = tmp_path_factory.mktemp("gallery") / "style.recipe.toml"

@@ -79,14 +79,25 @@ def test_hairs_stay_within_the_radius_of_their_lock():
     assert np.linalg.norm(bundle - bundle[:, :1], axis=3).max() < 0.00101
 
 
-def test_a_fraction_selects_the_first_hairs():
+def test_a_fraction_selects_some_hairs_and_a_smaller_one_some_of_these():
     made = groom()
-    everything, half = make_hairs(made).curves, make_hairs(made, fraction=0.5).curves
-    kept = everything.take(np.isin(everything.ids, half.ids))
-    assert len(half) == 40 * 6
-    assert np.array_equal(kept.points, half.points)
+    everything, half, few = (make_hairs(made, fraction=fraction).curves for fraction in (1.0, 0.5, 0.25))
+    assert len(half) == 40 * 6 and len(few) == 40 * 3
+    assert np.isin(few.ids, half.ids).all()
+    assert np.array_equal(everything.take(np.isin(everything.ids, half.ids)).points, half.points)
     with pytest.raises(UserError, match="fraction is 0"):
         make_hairs(made, fraction=0.0)
+
+
+def test_a_fraction_of_the_hairs_keeps_the_thickness_of_locks():
+    made = groom("per_lock = 80\nradius = '1 mm'\nstray = 0\nfrizz = 0\nshorter = 0\n")
+
+    def radius(fraction):
+        hairs = make_hairs(made, fraction=fraction).curves
+        bundle = hairs.points.reshape(40, -1, 60, 3)[:, :, 30]
+        return np.sqrt(np.sum((bundle - bundle[:, :1]) ** 2, axis=2).mean(axis=1))
+
+    assert radius(0.3) == pytest.approx(radius(1.0), rel=0.15)
 
 
 def test_hairs_thin_out_towards_the_tip():

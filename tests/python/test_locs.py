@@ -4,12 +4,23 @@ import numpy as np
 import pytest
 from ringlet.data.groom import STRAND_RADIUS
 from ringlet.groom.felt import FUZZ, MATTING, PROFILE
+from ringlet.groom.scalp import Scalp
+from shapes import ball
 from styles import groom
 
 from ringlet import read_groom, write_groom
 from ringlet.groom import lock_thickness, make_hairs
 
-LOC = "[[shape]]\nop = 'loc'\nradius = 0.4\ntaper = 0\ntip = 0\nfuzz = 0\nmatting = { value = 0, ramp = [[0, 1]] }\n"
+LOC = """
+[[shape]]
+op = 'loc'
+radius = 0.4
+taper = 0
+tip = 0
+fuzz = 0
+start = 0
+matting = { value = 0, ramp = [[0, 1]] }
+"""
 FULL = {"per_lock": 60, "radius": {"value": 0.1, "ramp": [(0.0, 1.0)]}, "frizz": 0.0, "stray": 0.0, "shorter": 0.0}
 
 
@@ -56,6 +67,18 @@ def test_matted_hairs_wander_through_the_loc_and_stay_in_it():
         assert reach(offset).max() < 0.00402
         a, b = offset[:, 10], offset[:, 23]  # 5 cm apart on straight locs
         assert np.sum(a * b) / np.sqrt(np.sum(a * a) * np.sum(b * b)) == pytest.approx(alike, abs=0.08)
+
+
+def test_hair_of_a_section_comes_to_its_loc_above_the_skin():
+    leaning = "[[shape]]\nop = 'bend'\nangle = 60\ntoward = [1, 0, 0]\n"
+
+    def heights(start):
+        made = groom("strands = 1", leaning + LOC.replace("start = 0", f"start = {start}"), "points = 120")
+        made.hairs = FULL | {"gather": 0.05}
+        points = make_hairs(made).curves.points.reshape(-1, 120, 3)[:, :10]
+        return Scalp(ball(), "scalp").solid.above(np.ascontiguousarray(points.reshape(-1, 3), np.float64))[0]
+
+    assert heights(1).min() > -3e-4 > -9e-4 > heights(0).min()
 
 
 def test_fuzz_stands_off_the_surface_of_a_loc_no_farther_than_its_length():

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
+from ringlet.data.precision import extent
 
 LEAST_REACH = 10.0  # how far hair and cloth may be from the head, however small that is [m]
 REACH_TIMES = 100.0  # or so many times the diagonal of the head's bounding box, whichever is more
@@ -26,14 +27,16 @@ def check_positions(points: NDArray, around: NDArray, where: str, name: Callable
     if not len(points):
         return
     low, high, reach = _box(around)
+    least, largest = extent(points)
+    if (least >= low).all() and (largest <= high).all():  # false for NaN
+        return
     outside = ~((points >= low) & (points <= high)).all(axis=1)  # also true for NaN
-    if outside.any():
-        row = int(outside.argmax())
-        place = ", ".join(f"{x:.4g}" for x in points[row])
-        raise UserError(
-            f"{where}: {name(row)} is at ({place}) m, {outside.sum()} of {len(points)} points are wrong; must be "
-            f"finite and at most {reach:.3g} m from the head, so nothing is written: undo the last change of settings"
-        )
+    row = int(outside.argmax())
+    place = ", ".join(f"{x:.4g}" for x in points[row])
+    raise UserError(
+        f"{where}: {name(row)} is at ({place}) m, {outside.sum()} of {len(points)} points are wrong; must be "
+        f"finite and at most {reach:.3g} m from the head, so nothing is written: undo the last change of settings"
+    )
 
 
 def check_curves(curves: Curves, points: NDArray, around: NDArray, where: str) -> None:

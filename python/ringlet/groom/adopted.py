@@ -16,6 +16,7 @@ from ringlet.data.quantities import Quantity
 from ringlet.groom.hair_settings import IDS_PER_LOCK, HairSettings
 from ringlet.groom.operators.operator import Context, Operator, grid, packed, with_grid
 from ringlet.groom.scalp import axes
+from ringlet.groom.thinning import thinned
 
 GATHER = 0.1  # part of a hair over which it comes from its root to its offset
 FREE = 0.3  # least part of an offset that is solved for: the rest holds to the root
@@ -198,9 +199,8 @@ def place_adopted(
             f"hairs.file: has no hairs of lock {groom.locks.ids[bare[0]]}, and of {bare.size} locks in all; take "
             "hairs.file away, so that the settings make them, or adopt the hair again"
         )
-    counts = np.maximum(1, np.round(full * fraction)).astype(np.int64)
-    number = np.arange(len(order)) - np.repeat(np.cumsum(full) - full, full)
-    order = order[number < np.repeat(counts, full)]
+    counts, made = thinned(full, fraction)
+    order = order[made]
     kept, lock = offsets.take(order), row[order].astype(np.int32)
     first, triangles = offsets_from_counts(counts), len(groom.scalp.triangles)
     if (off := np.flatnonzero((kept.root_triangle < 0) | (kept.root_triangle >= triangles))).size:

@@ -19,6 +19,7 @@ from ringlet.groom.values import Values
 MOST_FAMILIES = 64
 LEAST_POINTS = 6  # of a hair, per turn of its own coil
 TINY = float(np.finfo(np.float32).tiny)
+BLOCK = 64  # locks whose points and spectra stay in the cache
 FEWEST_TURNS = 1.5  # of a lock below which it has no coil
 
 
@@ -240,22 +241,28 @@ def check_points(coil: NDArray[np.float32], points: int) -> None:
 
 
 def turn_points(locks: Curves) -> NDArray[np.int32]:
-    """Points of a turn of each lock's coil, shape (locks,); 0 where a lock has none.
-
-    The number of turns is the centre of the strongest peak in the spectrum of the second differences of its points.
-    """
+    """Points of a turn of each lock's coil, shape (locks,); 0 where a lock has none."""
     result = np.zeros(len(locks), np.int32)
     for n in np.unique(locks.counts):
         if n < 8:
             continue
         chosen = np.flatnonzero(locks.counts == n)
-        points = locks.points[locks.offsets[chosen, None] + np.arange(n)]
-        bend = np.diff(points, 2, axis=1).astype(np.float32)
-        bend = (bend - bend.mean(axis=1, keepdims=True)) * np.hanning(n)[1:-1, None].astype(np.float32)
-        spectrum: NDArray[np.complex64] = np.asarray(rfft(bend, n, axis=1), np.complex64)
-        power = np.einsum("lfx,lfx->lf", spectrum.real, spectrum.real)
-        power += np.einsum("lfx,lfx->lf", spectrum.imag, spectrum.imag)
-        peak = np.where(power >= 0.25 * power.max(axis=1, keepdims=True), power, 0.0)
-        turns = np.sum(peak * np.arange(power.shape[1]), axis=1) / np.maximum(peak.sum(axis=1), TINY)
-        result[chosen] = np.where(turns >= FEWEST_TURNS, np.round(n / np.maximum(turns, 1.0)), 0.0)
+        for block in np.split(chosen, range(BLOCK, len(chosen), BLOCK)):
+            result[block] = _turn_points(locks.points[locks.offsets[block, None] + np.arange(n)])
     return result
+
+
+def _turn_points(points: NDArray[np.floating]) -> NDArray[np.float64]:
+    """Points of a turn of locks with as many points each, (locks, n, 3), whole numbers of shape (locks,).
+
+    The number of turns is the centre of the strongest peak in the spectrum of the second differences of its points.
+    """
+    n = points.shape[1]
+    bend = np.diff(points, 2, axis=1).astype(np.float32)
+    bend = (bend - bend.mean(axis=1, keepdims=True)) * np.hanning(n)[1:-1, None].astype(np.float32)
+    spectrum: NDArray[np.complex64] = np.asarray(rfft(bend, n, axis=1), np.complex64)
+    power = np.einsum("lfx,lfx->lf", spectrum.real, spectrum.real)
+    power += np.einsum("lfx,lfx->lf", spectrum.imag, spectrum.imag)
+    peak = np.where(power >= 0.25 * power.max(axis=1, keepdims=True), power, 0.0)
+    turns = np.sum(peak * np.arange(power.shape[1]), axis=1) / np.maximum(peak.sum(axis=1), TINY)
+    return np.where(turns >= FEWEST_TURNS, np.round(n / np.maximum(turns, 1.0)), 0.0)

@@ -23,6 +23,7 @@ from ringlet.groom.hair_curl import Placed
 from ringlet.groom.hair_settings import IDS_PER_LOCK, HairSettings, fiber_settings, hair_values, lock_radii
 from ringlet.groom.operators.woven import JOIN
 from ringlet.groom.shares import LAID, REACH, fed, scattered
+from ringlet.groom.thinning import thinned
 from ringlet.groom.values import Values
 
 FRIZZ_KNOTS = 8
@@ -45,10 +46,10 @@ def place_hairs(groom: Groom, settings: HairSettings, fraction: float, wider: bo
     roots, frames = root_frames(groom, scalp.points, "rest pose")
     areas = groom_areas(groom)
     full_count = lock_counts(groom, areas)
-    counts = np.maximum(1, np.round(full_count * fraction)).astype(np.int64)
+    counts, made = thinned(full_count, fraction)
     first = offsets_from_counts(counts)
     lock = np.repeat(np.arange(len(locks), dtype=np.int32), counts)
-    number = np.arange(len(lock)) - first[lock]
+    number = made - (np.cumsum(full_count) - full_count)[lock]
     ids = locks.ids[lock] * IDS_PER_LOCK + number
     disk = _disk(settings, ids, number, full_count[lock])
     hairs = Placed(ids, lock, _cross_section(own, lock, disk), lock_radii(locks, own("radius"))[lock], number > 0)

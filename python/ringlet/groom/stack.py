@@ -30,7 +30,7 @@ from ringlet.groom.hairs import HairMemory
 from ringlet.groom.load import stage_names
 from ringlet.groom.nails import nailed
 from ringlet.groom.operators import Context, Drawn, Operator, Resample, Tie
-from ringlet.groom.operators.operator import grid, unit
+from ringlet.groom.operators.operator import arc_lengths, grid, unit
 from ringlet.groom.operators.shape import Displacement, Shape
 from ringlet.groom.operators.tied import TO_TIE
 from ringlet.groom.recipe import Recipe
@@ -281,17 +281,23 @@ def _lengthened(name: str, before: Curves, after: Curves) -> Iterator[str]:
 
 def _inward(locks: Curves, scalp: Scalp) -> Iterator[str]:
     """A message where many locks start into the scalp: its faces may be turned inside out."""
-    points = grid(locks)[:, 1:]
-    along = np.linalg.norm(np.diff(grid(locks), axis=1), axis=2).cumsum(axis=1)
-    near = along < np.maximum(START, along[:, :1] * (1 + 1e-6))  # one point at least
-    start = np.where(near[:, :, None], points, 0.0).sum(axis=1) / near.sum(axis=1, keepdims=True) - locks.roots
-    inward = np.einsum("ki,ki->k", unit(start), scalp.frames(locks)[:, :, 2]) < STEEPLY_INWARD
+    inward = np.einsum("ki,ki->k", unit(_starts(locks)), scalp.frames(locks)[:, :, 2]) < STEEPLY_INWARD
     inward &= locks.curve.get(TO_TIE, np.zeros(len(locks))) == 0.0  # hair that is led to a tie follows the curved skin
     if inward.mean() > MANY:
         yield (
             f"{inward.sum()} of {len(locks)} locks, such as {locks.ids[inward.argmax()]}, start into the scalp and are "
             f"laid along it; if they are outside of it, reverse the orientation of {scalp.mesh.name}"
         )
+
+
+def _starts(locks: Curves) -> NDArray[np.float64]:
+    """From the root of each lock to the mean of its points over ``START``, at least one, shape (count, 3) [m]."""
+    points, most = grid(locks), 8
+    while (along := arc_lengths(points[:, :most]))[:, -1].min() < START and most < points.shape[1]:
+        most *= 2
+    near = along[:, 1:] < np.maximum(START, along[:, 1:2] * (1 + 1e-6))
+    sums = np.where(near[:, :, None], points[:, 1:most], 0.0).sum(axis=1)
+    return sums / near.sum(axis=1, keepdims=True) - locks.roots
 
 
 def _not_strands(locks: Curves) -> Iterator[str]:

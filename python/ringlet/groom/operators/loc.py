@@ -14,6 +14,8 @@ from ringlet.data.quantities import Quantity, Ramped, Varied
 from ringlet.groom.felt import FUZZ, KNOTS, MATTING, PROFILE
 from ringlet.groom.operators.operator import Context
 from ringlet.groom.operators.shape import Shape
+from ringlet.groom.operators.woven import JOIN
+from ringlet.groom.shares import REACH
 
 
 class Loc(Shape):
@@ -49,9 +51,13 @@ class Loc(Shape):
         description="length over which the tip closes: the radius is round, more thin",
     )
 
+    start: Annotated[Varied, Quantity("m", 0.0, 0.5)] = Field(
+        default=Varied(value=0.008), description="length at the root over which the hair of its section comes together"
+    )
+
     def apply(self, curves: Curves, context: Context) -> Curves:
         """Returns the curves with the attributes ``strand_radius`` [m], ``strand_profile``, ``strand_matting`` and
-        ``strand_fuzz`` [m]; see ``ringlet.groom.felt``."""
+        ``strand_fuzz`` [m], see ``ringlet.groom.felt``, and in sections ``join`` [m]."""
         points = len(curves.points) // len(curves)
         u, at_points = np.linspace(0.0, 1.0, KNOTS), np.linspace(0.0, 1.0, points)
         weight = np.array([np.interp(u, at_points, row) for row in self.weights(curves, context)])
@@ -67,6 +73,8 @@ class Loc(Shape):
             MATTING: np.minimum(matting, 1.0) * weight,
             FUZZ: fuzz * weight,
         }
+        if REACH in curves.curve:
+            new[JOIN] = context.values(self, "start", curves) * (curves.curve[REACH] > 0.0).any(axis=1)
         attributes = dict(curves.curve)
         for name, values in new.items():
             old = attributes.get(name, np.full(values.shape, 1.0 if name == PROFILE else 0.0))
