@@ -93,7 +93,8 @@ def test_answers_overwrite_no_note_that_is_typed_and_no_picture_that_is_moved(op
     Image.new("RGB", (60, 80), (96, 60, 36)).save(tmp_path / "photo.png")
     review: Review = opened(viewport={"width": 1280, "height": 800})
     page = review.page
-    write = "ringlet.model.say({{ kind: 'write_note', author: 'A', text: '{}', look: ringlet.look.state, at: null, lock: null, point: 0, strokes: [] }})"
+    note = "author: 'A', look: ringlet.look.state, at: null, lock: null, point: 0, strokes: []"
+    write = f"ringlet.model.say({{{{ kind: 'write_note', text: '{{}}', {note} }}}})"
     page.keyboard.press("t")
     page.get_by_role("tab", name="Notes").click()
     review.get(write.format("first"))

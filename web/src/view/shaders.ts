@@ -17,9 +17,9 @@ vec3 develop(vec3 light) {
 `;
 
 /**
- * The lamps: disks that face the subject. Light that arrives from each of them, without what is in between, for a lamp of
- * the strength E at its reach: on a surface that faces it E reach² / s², of all directions 2 E reach² / s (s + d), with
- * the distance d to its middle and s to its edge.
+ * The lamps are disks that face the subject. The shader gives the light that arrives from each, without what is in
+ * between. A lamp has the strength E at its reach; d is the distance to its middle, s that to its edge. The light is
+ * E reach² / s² on a surface that faces it, and 2 E reach² / s (s + d) of all directions.
  */
 export const LIGHTS = /* glsl */ `
 const int LAMPS = 4;
