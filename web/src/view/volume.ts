@@ -228,10 +228,12 @@ function sweep({ grid, hair, skin }: Matter, light: Vector3, throughHair: Float3
         const iu = Math.floor(x);
         const fu = x - iu;
         const there = row + iu;
-        const [w0, w1, w2, w3] = [(1 - fu) * (1 - fv), fu * (1 - fv), (1 - fu) * fv, fu * fv];
-        let d = w0 * depths[there] + w1 * depths[there + 1] + w2 * depths[there + wide] + w3 * depths[there + wide + 1];
-        let p =
-          w0 * passages[there] + w1 * passages[there + 1] + w2 * passages[there + wide] + w3 * passages[there + wide + 1];
+        const d0 = depths[there] + fu * (depths[there + 1] - depths[there]);
+        const d1 = depths[there + wide] + fu * (depths[there + wide + 1] - depths[there + wide]);
+        const p0 = passages[there] + fu * (passages[there + 1] - passages[there]);
+        const p1 = passages[there + wide] + fu * (passages[there + wide + 1] - passages[there + wide]);
+        let d = d0 + fv * (d1 - d0);
+        let p = p0 + fv * (p1 - p0);
         if (hair[here] > 0 || skin[here] > 0) {
           const half = 0.5 * Math.sqrt(1 + du * du + dv * dv);
           const within = half * size * hair[here];
@@ -324,6 +326,14 @@ class Coarse {
               optical[l] += depth[l][at] / 8;
             }
           }
+          this.flow[3][to] = sigma > 0 ? Math.max(0, 1 - mean.reduce((sum, x) => sum + x * x, 0) / sigma ** 2) : 1;
+          if (sigma + solid === 0) {
+            for (let c = 0; c < 3; c++) {
+              this.keep[c][to] = 1;
+              for (const values of [this.scatter[c], this.forward[c], this.source[c], ...this.stream[c]]) values[to] = 0;
+            }
+            continue;
+          }
           beams.forEach(({ place, reach, radius }, l) => {
             const towards = [place.x, place.y, place.z];
             [i, j, k].forEach((at, axis) => (towards[axis] -= grid.origin.getComponent(axis) + (2 * at + 1) * grid.size));
@@ -332,7 +342,6 @@ class Coarse {
             near[l] = (2 * reach * reach) / (edge * (edge + middle));
             for (let axis = 0; axis < 3; axis++) from[l][axis] = towards[axis] / middle;
           });
-          this.flow[3][to] = sigma > 0 ? Math.max(0, 1 - mean.reduce((sum, x) => sum + x * x, 0) / sigma ** 2) : 1;
           for (let c = 0; c < 3; c++) {
             const color = sigma > 0 ? q[c] / sigma : 0;
             const [omega, g] = [at(t.albedo, color), at(t.forward, color)];
