@@ -74,6 +74,7 @@ class Page:
     def taken(self) -> Image.Image:
         """The page once all of its hairs are in the picture."""
         self.until("ringlet.model.settled && ringlet.viewer.idle")
+        self.get("ringlet.viewer.drawNow()")  # as fine as the hairs allow, however slow the machine is
         return Image.open(io.BytesIO(self.page.screenshot())).convert("RGB")
 
 
