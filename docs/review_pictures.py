@@ -100,6 +100,8 @@ def served(file: str) -> Iterator[int]:
                     break
                 except OSError:
                     time.sleep(0.1)
+            else:
+                raise SystemExit(f"the review of {file} did not start: see the line above")
             yield port
         finally:
             server.terminate()
