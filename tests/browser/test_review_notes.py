@@ -89,6 +89,45 @@ def test_a_reference_is_shown_moved_and_gives_the_hair_its_color(opened: Any, fo
     assert not review.errors
 
 
+def test_answers_overwrite_no_note_that_is_typed_and_no_picture_that_is_moved(opened: Any, tmp_path: Path):
+    Image.new("RGB", (60, 80), (96, 60, 36)).save(tmp_path / "photo.png")
+    review: Review = opened(viewport={"width": 1280, "height": 800})
+    page = review.page
+    note = "author: 'A', look: ringlet.look.state, at: null, lock: null, point: 0, strokes: []"
+    write = f"ringlet.model.say({{{{ kind: 'write_note', text: '{{}}', {note} }}}})"
+    page.keyboard.press("t")
+    page.get_by_role("tab", name="Notes").click()
+    review.get(write.format("first"))
+    text = page.get_by_label("Text of note 1")
+    text.click()
+    page.keyboard.press("End")
+    page.keyboard.type(", softer")
+    review.get(write.format("second"))
+    review.until("ringlet.model.notes.length == 2")
+    assert text.input_value() == "first, softer"
+    page.keyboard.press("Tab")
+    review.until("ringlet.model.notes[0].text == 'first, softer'")
+    # The slider of a card is moved after the picture was dragged, which leaves the focus where it was.
+    page.get_by_role("tab", name="References").click()
+    page.locator("input[type=file]").set_input_files(tmp_path / "photo.png")
+    review.until("document.querySelector('.reference')?.naturalWidth == 60")
+    size = page.get_by_label("size of ‘photo.png’")
+    size.focus()
+    box = page.locator(".reference").bounding_box()
+    page.mouse.move(box["x"] + 20, box["y"] + 20)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 100, box["y"] + 60, steps=4)
+    page.mouse.up()
+    moved = -0.35 + 80 / review.get("ringlet.viewer.clear.height")
+    review.until(f"Math.abs(ringlet.model.references[0].x - {moved}) < 0.001")
+    before = review.get("ringlet.model.references[0].scale")
+    assert page.evaluate("document.activeElement.type") == "range"
+    page.keyboard.press("ArrowRight")
+    review.until(f"ringlet.model.references[0].scale > {before}")
+    assert review.get("ringlet.model.references[0].x") == pytest.approx(moved, abs=1e-3)
+    assert not review.errors
+
+
 def test_light_lens_and_bookmarks_are_kept_with_the_recipe_for_other_browsers(opened: Any, serve: Any):
     server = serve("small.recipe.toml")
     review: Review = opened(server)

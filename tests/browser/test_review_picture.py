@@ -16,12 +16,14 @@ from PIL import Image
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SIZE, SAMPLES, PATCH = 240, 16, 12
-# Bounds on percentiles of the luminance of patches: gaps between curls that are finer than a voxel have no shadow.
-BOUNDS = {5: 0.3, 50: 0.2, 95: 0.15}
+# Bounds on percentiles of the luminance of patches. The darkest are gaps between curls, finer than a voxel, which are
+# too bright, and what light from the skin reaches, which is too dark.
+BOUNDS = {5: 0.15, 25: 0.1, 50: 0.07, 75: 0.07, 95: 0.05}
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 # Type, locks, points of a hair, colour. There are few and thick hairs, so that a reference takes seconds.
 LOOKS = {
+    "dark": ("4C", 300, 220, "black"),
     "brown": ("3B", 300, 90, "brown"),
     "fair": ("1", 300, 40, "blond"),
 }

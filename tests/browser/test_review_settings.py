@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from typing import Any
 
 from conftest import Review
@@ -85,3 +86,36 @@ def test_a_pinned_setting_is_at_first_sight_of_its_stage(opened: Any):
     review.unfold("curl.flatness")
     flatness.get_by_role("button", name="Unpin flatness").click()
     assert not flatness.is_visible()
+
+
+def test_shorter_tighter_and_parted_on_the_left_takes_five_clicks_and_three_drags(opened: Any):
+    review: Review = opened(viewport={"width": 1280, "height": 800})
+    page = review.page
+    done = {"clicks": 0, "drags": 0}
+
+    def click(part: Any) -> None:
+        part.click()
+        done["clicks"] += 1
+
+    def drag(setting: str, by: float) -> float:
+        """Drags the knob of a setting by a fraction of its slider; returns the value that the recipe has then."""
+        slider = review.slider(setting)
+        slider.scroll_into_view_if_needed()
+        at = slider.evaluate("(input) => (input.value - input.min) / (input.max - input.min)")
+        review.drag(slider, at, at + by)
+        done["drags"] += 1
+        return float(slider.input_value())
+
+    click(page.locator('[data-stage="guides"]'))
+    length = float(review.slider("guides.length").input_value())
+    assert drag("guides.length", -0.1) < length
+    click(page.get_by_role("button", name="All settings"))
+    click(page.locator('[data-setting="guides.part"] > .field-head > .unfold'))
+    click(page.locator('[data-setting="guides.part"] summary').first)
+    assert drag("guides.part.offset", 0.02) > 0.0  # the character's left is at +X
+    click(page.locator('[data-stage="curl"]'))
+    width = float(review.slider("curl.width").input_value())
+    assert drag("curl.width", -0.1) < width
+    recipe = tomllib.loads(review.text())
+    assert recipe["guides"]["part"]["offset"] > 0.0 and not review.errors
+    assert done == {"clicks": 5, "drags": 3}  # docs/viewer.md says so

@@ -147,6 +147,15 @@ def test_the_page_keeps_only_frames_near_the_current_one(opened: Any, folder: Pa
     assert not review.errors
 
 
+def test_a_cache_says_that_it_has_no_chart_of_its_swing(opened: Any, folder: Path):
+    write_roofed(folder)
+    review: Review = opened("cache.usdc")
+    review.page.get_by_role("button", name="Swing and earlier runs").click()
+    assert "A cache holds positions, not speeds" in review.page.locator(".swing").inner_text()
+    assert not review.page.locator(".swing-plot").is_visible()
+    assert not review.errors
+
+
 def test_a_shot_is_compared_with_a_cache_and_overlays(opened: Any, folder: Path):
     groom = ringlet.build_groom(folder / "small.recipe.toml")
     ringlet.write_groom(groom, folder / "groom.usda")
@@ -173,6 +182,9 @@ def test_a_shot_is_compared_with_a_cache_and_overlays(opened: Any, folder: Path)
     review.page.get_by_label("Overlay").select_option("")
     review.get("ringlet.timeline.show(4)")
     review.until("ringlet.timeline.settled")
+    review.page.get_by_role("button", name="Swing and earlier runs").click()
+    assert "cache.usda has no speeds" in review.page.locator(".swing-legend").inner_text()
+    review.page.get_by_role("button", name="Swing and earlier runs").click()
     left, right = np.split(review.clear_picture(), 2, axis=1)
     assert different(left, right) > 0.002
     assert not review.errors

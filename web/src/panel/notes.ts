@@ -188,8 +188,7 @@ export class Notes {
   private update(): void {
     this.tray.update();
     this.marks.classList.toggle("draws", this.draft !== null);
-    const typing = this.list.contains(document.activeElement) && document.activeElement instanceof HTMLTextAreaElement;
-    if (!typing || !this.draft || !this.list.querySelector(".draft")) {
+    if (!this.typing) {
       const notes = this.model.notes.map((note, k) => this.card(note, k + 1));
       const resolved = (card: HTMLElement) => Number(card.classList.contains("resolved"));
       notes.sort((a, b) => resolved(a) - resolved(b));
@@ -197,6 +196,13 @@ export class Notes {
       this.list.replaceChildren(...(this.draft ? [this.editor(this.draft)] : []), ...notes, ...(notes.length || this.draft ? [] : [empty]));
     }
     this.place();
+  }
+
+  /** Whether the text of a note is being typed: its card stays. A draft that was ended goes. */
+  private get typing(): boolean {
+    const { activeElement } = document;
+    if (!(activeElement instanceof HTMLTextAreaElement) || !this.list.contains(activeElement)) return false;
+    return this.draft !== null || activeElement.closest(".draft") === null;
   }
 
   private editor(draft: Draft): HTMLElement {

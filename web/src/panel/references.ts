@@ -107,9 +107,9 @@ export class References {
   /** A picture that is moved by dragging it, and scaled by the wheel. */
   private image(id: string): HTMLImageElement {
     const image = h("img", { class: "reference", draggable: "false", "data-id": id });
-    const entry = () => this.model.references.find((one) => one.id === id)!;
     let from: { x: number; y: number } | null = null;
     let moved: Placement | null = null;
+    let wheeled: Placement | null = null; // answers to earlier turns of the wheel may arrive meanwhile
     image.addEventListener("pointerdown", (event) => {
       if (this.picking) {
         this.take(image, event);
@@ -122,7 +122,7 @@ export class References {
     image.addEventListener("pointermove", (event) => {
       if (!from) return;
       const { height } = this.viewer.clear;
-      const { mode, opacity, x, y, scale } = entry();
+      const { mode, opacity, x, y, scale } = this.entry(id);
       moved = { mode, opacity, scale, x: x + (event.clientX - from.x) / height, y: y - (event.clientY - from.y) / height };
       this.place(id, moved);
     });
@@ -134,15 +134,23 @@ export class References {
     let rest = 0;
     image.addEventListener("wheel", (event) => {
       event.preventDefault();
-      const one = entry();
-      one.scale = Math.min(20, Math.max(0.02, one.scale * Math.exp(-0.001 * event.deltaY)));
-      this.place(id, one);
+      wheeled ??= { ...this.entry(id) };
+      wheeled.scale = Math.min(20, Math.max(0.02, wheeled.scale * Math.exp(-0.001 * event.deltaY)));
+      this.place(id, wheeled);
       clearTimeout(rest);
-      rest = window.setTimeout(() => this.keep(id, one), 250);
+      rest = window.setTimeout(() => {
+        if (wheeled) this.keep(id, wheeled);
+        wheeled = null;
+      }, 250);
     }, { passive: false });
     this.images.set(id, image);
     this.element.append(image);
     return image;
+  }
+
+  /** A picture as it is stored now. */
+  private entry(id: string): Reference {
+    return this.model.references.find((one) => one.id === id)!;
   }
 
   private keep(id: string, { mode, opacity, x, y, scale }: Placement): void {
@@ -153,12 +161,12 @@ export class References {
     const mode = h("select", { "aria-label": `Where ‘${one.name}’ is` });
     for (const [name, label] of Object.entries(MODES)) mode.append(h("option", { value: name }, label));
     mode.value = one.mode;
-    mode.addEventListener("change", () => this.keep(one.id, { ...one, mode: mode.value as Reference["mode"] }));
+    mode.addEventListener("change", () => this.keep(one.id, { ...this.entry(one.id), mode: mode.value as Reference["mode"] }));
     const range = (label: string, name: "opacity" | "scale", min: number, max: number) => {
       const input = h("input", { type: "range", min, max, step: 0.01, "aria-label": `${label} of ‘${one.name}’`, title: label });
       input.value = String(one[name]);
-      input.addEventListener("input", () => this.place(one.id, { ...one, [name]: Number(input.value) }));
-      input.addEventListener("change", () => this.keep(one.id, { ...one, [name]: Number(input.value) }));
+      input.addEventListener("input", () => this.place(one.id, { ...this.entry(one.id), [name]: Number(input.value) }));
+      input.addEventListener("change", () => this.keep(one.id, { ...this.entry(one.id), [name]: Number(input.value) }));
       return h("label", { class: "placing" }, h("span", {}, label), input);
     };
     const picture = h("img", { src: this.model.pictures.get(`references/${one.id}`), alt: "" });

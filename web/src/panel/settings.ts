@@ -65,7 +65,7 @@ export class Settings {
       this.tools.clear();
       for (const field of this.fields) this.tools.set(field, this.makeTools(field));
       const nothing = locks.length > 0 && !settings.length;
-      const of = locks.length === 1 ? `lock ${locks[0]}` : `${locks.length} locks`;
+      const of = locks.length === 1 ? "the chosen lock" : `${locks.length} locks`;
       this.element.replaceChildren(
         this.search.input,
         this.search.results,

@@ -34,6 +34,7 @@ export class SwingChart {
   private readonly chart = document.createElementNS(NS, "svg");
   private readonly scale = h("span", { class: "swing-scale" });
   private readonly legend = h("div", { class: "swing-legend" });
+  private readonly plot = h("div", { class: "swing-plot" }, this.chart, this.scale);
   private readonly use = h("button", { type: "button", class: "quiet", hidden: true }, "Use its settings");
 
   /** goTo: shows a frame */
@@ -45,7 +46,7 @@ export class SwingChart {
     this.chart.setAttribute("preserveAspectRatio", "none");
     this.chart.setAttribute("role", "img");
     this.chart.setAttribute("aria-label", "Swing of the tips");
-    this.element.append(this.takes, h("div", { class: "swing-plot" }, this.chart, this.scale), h("div", { class: "swing-foot" }, this.legend, this.use));
+    this.element.append(this.takes, this.plot, h("div", { class: "swing-foot" }, this.legend, this.use));
     const scrub = (event: PointerEvent) => event.buttons & 1 && this.goTo(this.frameAt(event));
     this.chart.addEventListener("pointerdown", scrub);
     this.chart.addEventListener("pointermove", scrub);
@@ -78,6 +79,12 @@ export class SwingChart {
     this.takes.replaceChildren(...timeline.kept.map((take) => this.take(take, take === compared)));
     this.use.hidden = !compared;
     this.use.disabled = !role.leads;
+    const nothing = absence(timeline);
+    this.plot.hidden = nothing !== "";
+    if (nothing) {
+      this.legend.replaceChildren(h("span", {}, nothing));
+      return;
+    }
     const tips = { frames: timeline.frames, swings: timeline.swings, number: 0 };
     const others = { frames: timeline.against_frames, swings: timeline.against_swings, number: 0 };
     const roots = { ...tips, number: 1 };
@@ -103,6 +110,7 @@ export class SwingChart {
       entry(tips, "tips", "tips", speed),
       ...(compared ? [entry(others, free!, "tips other", speed, compared.number)] : []),
       entry(roots, "roots", "roots", speed),
+      ...(timeline.against && !compared ? [h("span", {}, `${timeline.against} has no speeds: a cache holds positions alone`)] : []),
       ...(values(kept).length ? [entry(kept, "motion kept, estimated", "kept", (value) => `${Math.round(100 * value)} %`)] : []),
     );
     const highest = (series: Series) => speed(Math.max(0, ...values(series).map(([, value]) => value)));
@@ -122,6 +130,12 @@ export class SwingChart {
     button.addEventListener("click", () => this.model.say({ kind: "against", run: pressed ? 0 : take.number }));
     return button;
   }
+}
+
+/** Why there is no chart; empty where there is one. */
+function absence({ state, frames }: Timeline): string {
+  if (state === "none") return "A cache holds positions, not speeds, and has no chart of its swing. Open its shot and run it to see one.";
+  return frames.length ? "" : "No frames are simulated yet. “Run” simulates them, and draws the speed of their tips here.";
 }
 
 /** Frames and their numbers, where these are known. */

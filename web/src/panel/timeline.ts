@@ -232,7 +232,6 @@ export class TimelineBar {
     );
     this.against.value = value;
     this.against.toggleAttribute("hidden", timeline.state === "none");
-    this.chart.toggleAttribute("hidden", timeline.state === "none");
     this.against.toggleAttribute("disabled", !role.leads);
     if (this.follows && ready !== undefined) this.show(ready);
     else this.draw();

@@ -41,9 +41,15 @@ out vec4 mass;
 void main() {
   int k = gl_VertexID * every, at = gl_InstanceID * points;
   vec4 here = lookup(hairPoints, at + k);
-  vec3 next = lookup(hairPoints, at + min(k + every, points - 1)).xyz;
+  vec3 next = here.xyz;
+  float way = 0.0; // along the hair, which the chord to the next point cuts short where it bends
+  for (int j = k + 1; j <= min(k + every, points - 1); j++) {
+    vec3 before = next;
+    next = lookup(hairPoints, at + j).xyz;
+    way += distance(before, next);
+  }
   ivec3 cell = ivec3(floor((here.xyz - origin) / voxel));
-  float projected = 0.7853982 * here.w * length(next - here.xyz) / (voxel * voxel * voxel);
+  float projected = 0.7853982 * here.w * way / (voxel * voxel * voxel);
   vec3 along = normalize(next - here.xyz + vec3(0.0, 1e-9, 0.0));
   vec3 value = tangents ? along : toneOf(gl_InstanceID, float(k) / float(points - 1));
   mass = projected / share * vec4(value, 1.0);

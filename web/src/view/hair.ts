@@ -326,13 +326,13 @@ export class Hair {
   }
 }
 
-function copied({ from, strength }: Beam): Beam {
-  return { from: from.clone(), strength: strength.clone() };
+function copied({ from, place, reach, radius, strength }: Beam): Beam {
+  return { from: from.clone(), place: place.clone(), reach, radius, strength: strength.clone() };
 }
 
 function isSame(one: { beams: Beam[]; ambient: Vector3 }, other: { beams: Beam[]; ambient: Vector3 }): boolean {
   const same = (a: Vector3, b: Vector3) => a.distanceToSquared(b) < 1e-12;
-  const beams = one.beams.every((beam, k) => same(beam.from, other.beams[k].from) && same(beam.strength, other.beams[k].strength));
+  const beams = one.beams.every((beam, k) => same(beam.place, other.beams[k].place) && same(beam.strength, other.beams[k].strength));
   return beams && same(one.ambient, other.ambient);
 }
 

@@ -62,7 +62,7 @@ void main() {
   float shares[LAMPS], even = ambient, beams = 1e-6;
   vec3 from[LAMPS];
   for (int k = 0; k < LAMPS; k++) {
-    vec3 E = irradiance(k, place, from[k]);
+    vec3 E = fluence(k, place, from[k]);
     vec3 arriving = E * past[k] * exp(-depth[k] * passing);
     shares[k] = arriving.g * 0.0795775; // 1 / 4π
     beams += shares[k];

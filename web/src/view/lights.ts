@@ -54,8 +54,15 @@ export class Lights {
     return new Vector3(...this.rig.ambient);
   }
 
-  /** The lamps as beams, for the light in the mass of the hair. */
+  /** The lamps as the light in the mass of the hair needs them. */
   get beams(): Beam[] {
-    return this.from.map((from, k) => ({ from, strength: this.uniforms.lampStrength.value[k] }));
+    const { lampAt, lampStrength, lampSpread, lampReach } = this.uniforms;
+    return this.from.map((from, k) => ({
+      from,
+      place: lampAt.value[k],
+      reach: lampReach.value[k],
+      radius: lampSpread.value[k] * lampReach.value[k],
+      strength: lampStrength.value[k],
+    }));
   }
 }

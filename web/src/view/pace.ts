@@ -8,9 +8,9 @@ const MOVING = 16; // aim for a picture while something moves [ms]
 const SOFTWARE = 60; // the same without a graphics card [ms]
 const AT_REST = 33; // longest drawing at rest [ms]
 const CANCEL = 80; // the same without a graphics card: input waits for the drawing that is on its way [ms]
-const LEAST = 0.02; // least load
 const FEWEST = { card: 12, software: 5 }; // drawings of a picture at rest, so that its edges are smooth
 const MOST = 48;
+const LEAST = 1 / MOST; // least load: at rest, all hairs are in the picture in the end
 
 /** What one picture draws: so many drawings of a fraction of the hairs each. */
 export interface Portion {

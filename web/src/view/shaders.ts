@@ -16,19 +16,32 @@ vec3 develop(vec3 light) {
 }
 `;
 
-/** The lamps: light that arrives from each of them, as an irradiance, without what is in between. */
+/**
+ * The lamps are disks that face the subject. The shader gives the light that arrives from each, without what is in
+ * between. A lamp has the strength E at its reach; d is the distance to its middle, s that to its edge. The light is
+ * E reach² / s² on a surface that faces it, and 2 E reach² / s (s + d) of all directions.
+ */
 export const LIGHTS = /* glsl */ `
 const int LAMPS = 4;
 uniform vec3 lampAt[LAMPS], lampStrength[LAMPS];
-uniform float lampSpread[LAMPS]; // radius over distance
-uniform float lampReach[LAMPS];  // distance at which the strength holds [m]
+uniform float lampSpread[LAMPS]; // radius over reach
+uniform float lampReach[LAMPS];  // distance at which the strength holds for a point [m]
 uniform float ambient;           // radiance of the surroundings
-vec3 irradiance(int k, vec3 place, out vec3 towards) {
+void lampFrom(int k, vec3 place, out vec3 towards, out float middle, out float edge) { // in reaches
   towards = lampAt[k] - place;
-  float away = length(towards);
-  towards /= away;
-  float nearer = lampReach[k] / away;
-  return lampStrength[k] * nearer * nearer;
+  middle = length(towards) / lampReach[k];
+  edge = sqrt(middle * middle + lampSpread[k] * lampSpread[k]);
+  towards = normalize(towards);
+}
+vec3 irradiance(int k, vec3 place, out vec3 towards) {
+  float middle, edge;
+  lampFrom(k, place, towards, middle, edge);
+  return lampStrength[k] / (edge * edge);
+}
+vec3 fluence(int k, vec3 place, out vec3 towards) {
+  float middle, edge;
+  lampFrom(k, place, towards, middle, edge);
+  return lampStrength[k] * 2.0 / (edge * (edge + middle));
 }
 `;
 

@@ -1,7 +1,8 @@
 // Light in the mass of the hair, on a grid of voxels: how much of each lamp reaches a place, and the light that hairs,
 // skin and surroundings scatter there.
 //
-// Extinction is that of fibers of all directions, σ = Σ π/4 · diameter · length per volume. A beam includes what is
+// Extinction is that of fibers of all directions, σ = Σ π/4 · diameter · length per volume. A lamp is a disk nearby: its
+// light comes from three points of it, each of which throws its own shadow. A beam includes what is
 // scattered forward: extinction is scaled by 1 - ωf, with f = g² (delta-Eddington: Joseph et al. 1976). The rest is
 // scattered with the mean cosine g' = g / (1 + g), and transported along the six directions of the axes (six-flux: Chu
 // and Churchill 1955).
@@ -20,13 +21,18 @@ import { at, type Transport } from "./fiber";
 
 /** Voxels along the longest side of the grid. */
 const VOXELS = 64;
+const LAMP_POINTS = 3; // of a lamp's disk, from which shadows are cast
+const DARKEST = 1e-6; // least part of a lamp's light: keeps optical depths finite
 const SHELL = 6; // optical depth of a voxel of skin
 const SWEEPS = 12; // of the scattered light: it converges by the depth of the hair in free paths
 const SWEEPS_MORE = 3; // where it begins with a field that is nearly right
 
-/** A lamp as the grid needs it: direction towards it, and irradiance. */
+/** A lamp: a disk at a place, direction from the subject towards it, its radius, and the irradiance at its reach [m]. */
 export interface Beam {
   from: Vector3;
+  place: Vector3;
+  reach: number;
+  radius: number;
   strength: Vector3;
 }
 
@@ -154,7 +160,7 @@ export class LightVolume {
   light(beams: Beam[], ambient: Vector3, transport: Transport): void {
     const { matter, depth, passed, coarse } = this;
     if (!matter || !depth || !passed || !coarse) return;
-    beams.forEach((beam, k) => sweep(matter, beam.from, depth[k], passed[k]));
+    beams.forEach((beam, k) => cast(matter, beam, depth[k], passed[k]));
     coarse.light(matter, beams, depth, passed, ambient, transport);
     pack(this.uniforms.gridDepth.value, depth);
     pack(this.uniforms.gridPassed.value, passed);
@@ -168,49 +174,80 @@ export class LightVolume {
   }
 }
 
-/** Optical depth of hair and passage of skin towards a light, slice by slice away from it, interpolated in each. */
-function sweep({ grid, hair, skin }: Matter, from: Vector3, depth: Float32Array, passed: Float32Array): void {
-  const { counts, size } = grid;
-  const direction = [from.x, from.y, from.z];
-  const lengths = direction.map(Math.abs);
-  const main = lengths.indexOf(Math.max(...lengths));
+/** Points of a lamp's disk that stand for it, at the root mean square of its radii. */
+function pointsOf({ from, place, radius }: Beam): Vector3[] {
+  const right = new Vector3(-from.z, 0, from.x).normalize();
+  const up = new Vector3().crossVectors(right, from);
+  return Array.from({ length: LAMP_POINTS }, (_, k) => {
+    const angle = (2 * Math.PI * k) / LAMP_POINTS;
+    const [x, y] = [Math.cos(angle), Math.sin(angle)].map((value) => value * Math.SQRT1_2 * radius);
+    return place.clone().addScaledVector(right, x).addScaledVector(up, y);
+  });
+}
+
+/** Optical depth of hair and passage of skin towards a lamp, by the mean of what passes from its points. */
+function cast(matter: Matter, beam: Beam, depth: Float32Array, passed: Float32Array): void {
+  depth.fill(0);
+  passed.fill(0);
+  if (beam.strength.lengthSq() === 0) return;
+  for (const point of pointsOf(beam)) sweep(matter, point, depth, passed);
+  for (let i = 0; i < depth.length; i++) {
+    depth[i] = depth[i] >= LAMP_POINTS ? 0 : -Math.log(Math.max(depth[i] / LAMP_POINTS, DARKEST));
+    passed[i] /= LAMP_POINTS;
+  }
+}
+
+/** Adds what hair and what skin let pass from a point of light, slice by slice away from it, interpolated in each. */
+function sweep({ grid, hair, skin }: Matter, light: Vector3, throughHair: Float32Array, throughSkin: Float32Array): void {
+  const { counts, size, origin } = grid;
+  const at = light.clone().sub(origin).divideScalar(size).subScalar(0.5).toArray(); // in voxels, from the middle of the first
+  const away = at.map((place, axis) => Math.abs(place - 0.5 * (counts[axis] - 1)));
+  const main = away.indexOf(Math.max(...away));
   const [u, v] = [(main + 1) % 3, (main + 2) % 3];
   const strides = [1, counts[0], counts[0] * counts[1]];
   const [nu, nv, nm] = [counts[u], counts[v], counts[main]];
-  const step = 1 / lengths[main]; // in voxels, from one slice to the next
-  const [du, dv] = [direction[u] * step, direction[v] * step];
-  const [iu, iv] = [Math.floor(du), Math.floor(dv)];
-  const [fu, fv] = [du - iu, dv - iv];
-  const weights = [(1 - fu) * (1 - fv), fu * (1 - fv), (1 - fu) * fv, fu * fv];
-  const half = 0.5 * step * size;
+  const above = at[main] > 0.5 * (nm - 1);
   // What leaves the slice before, with a border of what comes from outside of the grid.
   const wide = nu + 2;
   let [depths, passages] = [new Float32Array(wide * (nv + 2)), new Float32Array(wide * (nv + 2)).fill(1)];
   let [nextDepths, nextPassages] = [depths.slice(), passages.slice()];
   for (let m = 0; m < nm; m++) {
-    const slice = (direction[main] > 0 ? nm - 1 - m : m) * strides[main];
+    const slice = above ? nm - 1 - m : m;
+    const nearer = 1 / Math.max(Math.abs(at[main] - slice), 1); // part of the way to the light from slice to slice
     for (let b = 0; b < nv; b++) {
-      let here = slice + b * strides[v];
+      const dv = (at[v] - b) * nearer;
+      const y = Math.min(Math.max(b + dv, -1), nv - 1e-3);
+      const iv = Math.floor(y);
+      const fv = y - iv;
+      const row = 1 + (iv + 1) * wide;
+      let here = slice * strides[main] + b * strides[v];
       let to = 1 + (b + 1) * wide;
-      let there = to + iu + iv * wide;
-      for (let a = 0; a < nu; a++, here += strides[u], to++, there++) {
-        const d =
-          weights[0] * depths[there] +
-          weights[1] * depths[there + 1] +
-          weights[2] * depths[there + wide] +
-          weights[3] * depths[there + wide + 1];
-        let p =
-          weights[0] * passages[there] +
-          weights[1] * passages[there + 1] +
-          weights[2] * passages[there + wide] +
-          weights[3] * passages[there + wide + 1];
-        const within = half * hair[here];
-        const shell = skin[here] > 0 ? Math.exp(-0.5 * step * skin[here]) : 1;
-        p *= shell;
-        depth[here] = d + within;
-        passed[here] = p;
-        nextDepths[to] = d + 2 * within;
-        nextPassages[to] = p * shell;
+      for (let a = 0; a < nu; a++, here += strides[u], to++) {
+        const du = (at[u] - a) * nearer;
+        const x = Math.min(Math.max(a + du, -1), nu - 1e-3);
+        const iu = Math.floor(x);
+        const fu = x - iu;
+        const there = row + iu;
+        const d0 = depths[there] + fu * (depths[there + 1] - depths[there]);
+        const d1 = depths[there + wide] + fu * (depths[there + wide + 1] - depths[there + wide]);
+        const p0 = passages[there] + fu * (passages[there + 1] - passages[there]);
+        const p1 = passages[there + wide] + fu * (passages[there + wide + 1] - passages[there + wide]);
+        let d = d0 + fv * (d1 - d0);
+        let p = p0 + fv * (p1 - p0);
+        if (hair[here] > 0 || skin[here] > 0) {
+          const half = 0.5 * Math.sqrt(1 + du * du + dv * dv);
+          const within = half * size * hair[here];
+          const shell = skin[here] > 0 ? Math.exp(-half * skin[here]) : 1;
+          p *= shell;
+          d += within;
+          nextDepths[to] = d + within;
+          nextPassages[to] = p * shell;
+        } else {
+          nextDepths[to] = d;
+          nextPassages[to] = p;
+        }
+        throughHair[here] += d > 0 ? Math.exp(-d) : 1;
+        throughSkin[here] += p;
       }
     }
     [depths, nextDepths] = [nextDepths, depths];
@@ -266,7 +303,8 @@ class Coarse {
     const [nx, ny] = grid.counts;
     const [cx, cy, cz] = this.counts;
     const strength = beams.map((beam) => beam.strength.toArray());
-    const from = beams.map((beam) => beam.from.toArray());
+    const from = beams.map(() => [0, 0, 0]);
+    const near = [0, 0, 0, 0];
     for (let k = 0, to = 0; k < cz; k++)
       for (let j = 0; j < cy; j++)
         for (let i = 0; i < cx; i++, to++) {
@@ -289,6 +327,21 @@ class Coarse {
             }
           }
           this.flow[3][to] = sigma > 0 ? Math.max(0, 1 - mean.reduce((sum, x) => sum + x * x, 0) / sigma ** 2) : 1;
+          if (sigma + solid === 0) {
+            for (let c = 0; c < 3; c++) {
+              this.keep[c][to] = 1;
+              for (const values of [this.scatter[c], this.forward[c], this.source[c], ...this.stream[c]]) values[to] = 0;
+            }
+            continue;
+          }
+          beams.forEach(({ place, reach, radius }, l) => {
+            const towards = [place.x, place.y, place.z];
+            [i, j, k].forEach((at, axis) => (towards[axis] -= grid.origin.getComponent(axis) + (2 * at + 1) * grid.size));
+            const middle = Math.hypot(...towards);
+            const edge = Math.hypot(middle, radius);
+            near[l] = (2 * reach * reach) / (edge * (edge + middle));
+            for (let axis = 0; axis < 3; axis++) from[l][axis] = towards[axis] / middle;
+          });
           for (let c = 0; c < 3; c++) {
             const color = sigma > 0 ? q[c] / sigma : 0;
             const [omega, g] = [at(t.albedo, color), at(t.forward, color)];
@@ -301,7 +354,7 @@ class Coarse {
             let beamed = 0;
             const streamed = [0, 0, 0];
             for (let l = 0; l < beams.length; l++) {
-              const one = (strength[l][c] * arriving[l] * Math.exp(-optical[l] * (1 - omega * g * g))) / (4 * Math.PI);
+              const one = (strength[l][c] * near[l] * arriving[l] * Math.exp(-optical[l] * (1 - omega * g * g))) / (4 * Math.PI);
               beamed += one;
               for (let axis = 0; axis < 3; axis++) streamed[axis] -= one * from[l][axis];
             }
