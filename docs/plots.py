@@ -84,21 +84,14 @@ def write_memory(path: Path) -> None:
 def write_tips(path: Path) -> None:
     """How far the median tip is from its place in the first frame: without contact, converged, and at settings."""
     result = json.loads(TIPS.read_text())["result"]
-    converged = result["params"]["converged"]
+    frames = 1 + np.arange(len(result["free_mm"]))
     figure = Figure(figsize=(8, 3.4), layout="constrained")
     axes = figure.subplots()
-    colors = iter(("#d9a441", "#8c3b2a", "#2a5b8c"))
-    for name, run in result["runs"].items():
-        iterations = name.split("/")[0]
-        frames = 1 + np.arange(len(run["tips_mm"]))
-        if name == "free":
-            axes.plot(frames, run["tips_mm"], ":", color="gray", lw=1.5, label="without contact")
-        elif name == converged:
-            axes.plot(
-                frames, run["tips_mm"], color="black", lw=2.5, alpha=0.6, label=f"converged, {iterations} iterations"
-            )
-        else:
-            axes.plot(frames, run["tips_mm"], color=next(colors), lw=1.2, label=f"{iterations} iterations")
+    axes.plot(frames, result["free_mm"], ":", color="gray", lw=1.5, label="without contact")
+    axes.plot(frames, result["converged_mm"], color="black", lw=2.5, alpha=0.6, label="converged")
+    colors = mpl.colormaps["viridis"].resampled(len(result["trials"]) + 1)
+    for k, trial in enumerate(result["trials"]):
+        axes.plot(frames, trial["tips_mm"], color=colors(k), lw=1.2, label=f"{trial['iterations']} iterations")
     axes.set_ylim(0, None)
     axes.set_xlabel("frame", fontsize=9)
     axes.set_ylabel("distance of the median tip [mm]", fontsize=9)

@@ -13,11 +13,8 @@ import argparse
 import io
 import re
 import shutil
-import socket
-import subprocess
 import sys
 import tempfile
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -26,41 +23,20 @@ from typing import Any
 from PIL import Image
 from playwright.sync_api import Browser, sync_playwright
 
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "browser"))
+from review import CHROMIUM, FLAGS, PATIENCE, Review, Server
+
 DOCS = Path(__file__).parent
 IMAGES, EXAMPLE = DOCS / "images", DOCS.parent / "examples/child"
-FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
-PATIENCE = 240.0  # [s] for software rendering
 DESKTOP, WIDE, TABLET, LYING, PHONE = (1280, 800), (1920, 1080), (820, 1180), (1180, 820), (390, 844)
 COUNTS = {r"count = 1050": "count = 620", r"per_lock = 36": "per_lock = 12"}  # a picture in software takes seconds
 
 
-class Page:
-    """A page of a review that is served from a copy of the example."""
-
-    def __init__(self, browser: Browser, port: int, size: tuple[int, int], theme: str, touch: bool = False) -> None:
-        context = browser.new_context(
-            viewport={"width": size[0], "height": size[1]}, color_scheme=theme, has_touch=touch, is_mobile=touch
-        )
-        context.set_default_timeout(1000 * PATIENCE)
-        self.page = context.new_page()
-        self.page.goto(f"http://127.0.0.1:{port}/")
-        self.until("window.ringlet?.viewer.hair.a.table && ringlet.model.settled")
-
-    def get(self, expression: str) -> Any:
-        return self.page.evaluate(f"() => {expression}")
-
-    def until(self, expression: str) -> None:
-        deadline = time.monotonic() + PATIENCE
-        while not self.get(f"Boolean({expression})"):
-            if time.monotonic() > deadline:
-                raise TimeoutError(expression)
-            time.sleep(0.1)
+class Page(Review):
+    """A page of the review, as a picture shows it."""
 
     def press(self, name: str, role: str = "button") -> None:
         self.page.get_by_role(role, name=name, exact=True).click()
-
-    def choose(self, stage: str) -> None:
-        self.page.locator(f'[data-stage="{stage}"]').click()
 
     def stroke(self, *places: tuple[float, float]) -> None:
         """Draws with the pointer through places of the page [pixels]."""
@@ -73,51 +49,53 @@ class Page:
 
     def taken(self) -> Image.Image:
         """The page once all of its hairs are in the picture."""
-        self.until("ringlet.model.settled && ringlet.viewer.idle")
+        self.settled()
+        self.until("ringlet.viewer.idle")
         self.get("ringlet.viewer.drawNow()")  # as fine as the hairs allow, however slow the machine is
         return Image.open(io.BytesIO(self.page.screenshot())).convert("RGB")
 
 
 @contextmanager
-def served(file: str) -> Iterator[int]:
-    """Serves a file of a copy of the example with fewer hairs; yields the port."""
-    with socket.socket() as free, tempfile.TemporaryDirectory() as folder:
+def served(file: str) -> Iterator[Server]:
+    """Serves a file of a copy of the example with fewer hairs."""
+    with tempfile.TemporaryDirectory() as folder:
         shutil.copytree(EXAMPLE, folder, dirs_exist_ok=True)
         recipe = Path(folder, "curls.recipe.toml")
         text = recipe.read_text()
         for old, new in COUNTS.items():
             text = re.sub(old, new, text)
         recipe.write_text(text)
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
-        free.close()
-        command = ["from ringlet.cli import main; main()", "view", file, "--port", str(port), "--no-browser"]
-        server = subprocess.Popen([sys.executable, "-c", *command], cwd=folder, stdout=subprocess.DEVNULL)
+        server = Server(Path(folder, file))
+        server.start()
         try:
-            while server.poll() is None:
-                try:
-                    socket.create_connection(("127.0.0.1", port), 1.0).close()
-                    break
-                except OSError:
-                    time.sleep(0.1)
-            else:
-                raise SystemExit(f"the review of {file} did not start: see the line above")
-            yield port
+            yield server
         finally:
-            server.terminate()
-            server.wait()
+            server.kill()
+
+
+def opened(browser: Browser, server: Server, size: tuple[int, int], theme: str, touch: bool = False) -> Page:
+    """A new page of a served review."""
+    options: dict[str, Any] = {"color_scheme": theme, "has_touch": touch, "is_mobile": touch}
+    context = browser.new_context(viewport={"width": size[0], "height": size[1]}, **options)
+    context.set_default_timeout(1000 * PATIENCE)
+    return Page(context.new_page(), server.address)
+
+
+@contextmanager
+def page_of(browser: Browser, file: str, size: tuple[int, int], theme: str, touch: bool = False) -> Iterator[Page]:
+    """A page of a review of its own."""
+    with served(file) as server:
+        yield opened(browser, server, size, theme, touch)
 
 
 def review(browser: Browser) -> Image.Image:
-    with served("curls.recipe.toml") as port:
-        page = Page(browser, port, DESKTOP, "dark")
+    with page_of(browser, "curls.recipe.toml", DESKTOP, "dark") as page:
         page.choose("curl")
         return page.taken()
 
 
 def lock(browser: Browser) -> Image.Image:
-    with served("curls.recipe.toml") as port:
-        page = Page(browser, port, DESKTOP, "dark")
+    with page_of(browser, "curls.recipe.toml", DESKTOP, "dark") as page:
         page.choose("curl")
         page.get("ringlet.lock.choose(40)")
         page.press("Isolate")
@@ -127,8 +105,7 @@ def lock(browser: Browser) -> Image.Image:
 
 
 def sculpt(browser: Browser) -> Image.Image:
-    with served("curls.recipe.toml") as port:
-        page = Page(browser, port, DESKTOP, "dark")
+    with page_of(browser, "curls.recipe.toml", DESKTOP, "dark") as page:
         page.page.keyboard.press("b")
         page.press("comb")
         page.stroke((640, 190), (690, 150), (760, 130))
@@ -137,8 +114,7 @@ def sculpt(browser: Browser) -> Image.Image:
 
 
 def shot(browser: Browser) -> Image.Image:
-    with served("hat.shot.toml") as port:
-        page = Page(browser, port, DESKTOP, "light")
+    with page_of(browser, "hat.shot.toml", DESKTOP, "light") as page:
         page.choose("shot:strands")
         page.press("Run")
         page.until("ringlet.timeline.count >= 8")
@@ -150,8 +126,7 @@ def shot(browser: Browser) -> Image.Image:
 
 
 def tablet(browser: Browser) -> Image.Image:
-    with served("curls.recipe.toml") as port:
-        page = Page(browser, port, TABLET, "light", touch=True)
+    with page_of(browser, "curls.recipe.toml", TABLET, "light", touch=True) as page:
         page.page.keyboard.press("b")
         return page.taken()
 
@@ -159,8 +134,8 @@ def tablet(browser: Browser) -> Image.Image:
 def people(browser: Browser) -> Image.Image:
     """A review of two pages, as stills: the one who leads on the left, the one who follows on the right."""
     stills: list[Image.Image] = []
-    with served("curls.recipe.toml") as port:
-        one, two = (Page(browser, port, DESKTOP, "dark") for _ in range(2))
+    with served("curls.recipe.toml") as server:
+        one, two = (opened(browser, server, DESKTOP, "dark") for _ in range(2))
 
         def still() -> None:
             both = Image.new("RGB", (1600, 500))
@@ -212,9 +187,9 @@ STATES = {
 def states(browser: Browser, folder: Path) -> None:
     """Takes each state of the page in each size, in both themes."""
     folder.mkdir(parents=True, exist_ok=True)
-    with served("curls.recipe.toml") as port:
+    with served("curls.recipe.toml") as server:
         for k, size in enumerate((DESKTOP, WIDE, TABLET, LYING, PHONE)):
-            page = Page(browser, port, size, ("dark", "light")[k % 2], touch=size in (TABLET, LYING, PHONE))
+            page = opened(browser, server, size, ("dark", "light")[k % 2], touch=size in (TABLET, LYING, PHONE))
             for state, action in STATES.items():
                 if action.startswith("key"):
                     page.page.keyboard.press(action[4:])
@@ -233,7 +208,7 @@ def main() -> None:
     if unknown := [name for name in options.names if name not in PICTURES]:
         parser.error(f"there is no picture '{unknown[0]}'; choose of {', '.join(PICTURES)}")
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
         if options.states:
             states(browser, options.states)
             return

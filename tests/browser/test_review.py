@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import Review, different
+from review import Review, different
 from test_several_grooms import SEVERAL
 
 from ringlet import build_groom, build_hairs

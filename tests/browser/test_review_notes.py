@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import Review
 from PIL import Image
+from review import Review
 
 
 def point_of_lock(review: Review, row: int = 2) -> np.ndarray:

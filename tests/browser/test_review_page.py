@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import Review
 from PIL import Image
+from review import Review
 
 SIXTY_FRAMES = """() => new Promise(done => {
     let left = 60;

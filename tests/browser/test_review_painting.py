@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from conftest import Review, different
+from review import Review, different
 from test_viewer_painting import unwrap
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from conftest import Review
+from review import Review
 
 EYE = "ringlet.viewer.camera.position.toArray()"
 

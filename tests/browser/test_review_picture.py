@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import Review
 from numpy.typing import NDArray
 from PIL import Image
+from review import Review
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SIZE, SAMPLES, PATCH = 240, 16, 12

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from conftest import Review
+from review import Review
 
 
 def test_a_preset_is_shown_while_the_pointer_rests_on_it_and_taken_by_a_click(opened: Any, folder: Path):

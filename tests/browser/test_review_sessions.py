@@ -5,7 +5,7 @@ from __future__ import annotations
 import signal
 from typing import Any
 
-from conftest import Review, different
+from review import Review, different
 
 
 def test_one_page_edits_and_the_other_follows(opened: Any, serve: Any):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import tomllib
 from typing import Any
 
-from conftest import Review
+from review import Review
 
 # Heights of the panel for every operator, with `said` of its settings in the file; the page alone, without the server.
 HEIGHTS = """(said) => {

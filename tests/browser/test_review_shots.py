@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from conftest import Review, different
+from review import Review, different
 from wear import SCARF, write_roofed, write_wear
 
 import ringlet

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import Review, different
+from review import Review, different
 
 AXES = (("x", "width"), ("y", "height"))
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import Review, different
+from review import Review, different
 
 
 def number(review: Review, setting: str) -> Any:

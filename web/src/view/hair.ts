@@ -332,7 +332,10 @@ function copied({ from, place, reach, radius, strength }: Beam): Beam {
 
 function isSame(one: { beams: Beam[]; ambient: Vector3 }, other: { beams: Beam[]; ambient: Vector3 }): boolean {
   const same = (a: Vector3, b: Vector3) => a.distanceToSquared(b) < 1e-12;
-  const beams = one.beams.every((beam, k) => same(beam.place, other.beams[k].place) && same(beam.strength, other.beams[k].strength));
+  const beams = one.beams.every((beam, k) => {
+    const { place, reach, radius, strength } = other.beams[k];
+    return same(beam.place, place) && beam.reach === reach && beam.radius === radius && same(beam.strength, strength);
+  });
   return beams && same(one.ambient, other.ambient);
 }
 

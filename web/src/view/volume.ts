@@ -304,7 +304,7 @@ class Coarse {
     const [cx, cy, cz] = this.counts;
     const strength = beams.map((beam) => beam.strength.toArray());
     const from = beams.map(() => [0, 0, 0]);
-    const near = [0, 0, 0, 0];
+    const near = beams.map(() => 0);
     for (let k = 0, to = 0; k < cz; k++)
       for (let j = 0; j < cy; j++)
         for (let i = 0; i < cx; i++, to++) {
