@@ -31,14 +31,13 @@ ROOT, FOLDER = DOCS.parent, DOCS / "images" / "gallery"
 HEADS = ("child", "adult")
 COLUMNS = 6  # of small pictures
 FOCAL_LENGTH, AWAY = 0.085, 1.9  # of the lens; from the camera to what it looks at [m]
-THINNED = 0.33  # part of the hairs in pictures of a head: each is three times as wide, a third of a pixel
 
 
 PAGE_HEAD = """# Gallery
 
 Styles on two heads in one light. The child and the adult are made by the code in `examples/child` and `examples/adult`.
-Grooms have about 120 hairs per cm² of scalp or more, also in braids, twists, locs. Pictures are path-traced: close-ups
-with all hairs, heads with a third of them, each three times as wide, which is a third of a pixel.
+Grooms have about 120 hairs per cm² of scalp or more, also in braids, twists, locs. Pictures are path-traced, with all
+hairs.
 Pictures that are not rendered yet are left out.
 `python docs/gallery.py` makes the pictures, and this page from `docs/gallery.toml`.
 
@@ -166,8 +165,7 @@ def render(style: Style, names: list[str], engine: str) -> None:
     for name in names:
         head, camera = style.shots[name]
         mark = digest(style.recipe, head, camera)  # before a recipe is edited while this runs
-        fraction = 1.0 if name == "close" else THINNED
-        picture = photograph(variant(style.recipe, head), camera, engine, fraction)
+        picture = photograph(variant(style.recipe, head), camera, engine)
         picture.save(picture_path(style, name), quality=84, comment=mark.encode())
         print(picture_path(style, name).relative_to(ROOT), flush=True)
 

@@ -15,7 +15,7 @@ import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
-from gallery import DOCS, ROOT, THINNED, Shot, digest, photograph, shot, stored_digest
+from gallery import DOCS, ROOT, Shot, digest, photograph, shot, stored_digest
 from PIL import Image
 
 FOLDER = DOCS / "images" / "styles"
@@ -72,7 +72,7 @@ def mark_of(picture: Picture) -> str:
 
 def render(picture: Picture, engine: str) -> Image.Image:
     """Renders the panels of a picture and places them."""
-    panels = [photograph(panel.recipe, panel.camera, engine, THINNED) for panel in picture.panels]
+    panels = [photograph(panel.recipe, panel.camera, engine) for panel in picture.panels]
     width, height = (size + SPACE for size in panels[0].size)
     columns, rows = picture.columns, -(-len(panels) // picture.columns)
     whole = Image.new("RGB", (columns * width - SPACE, rows * height - SPACE), "white")
