@@ -13,7 +13,7 @@ from PIL import Image
 from ringlet.data.errors import UserError
 from ringlet.report import Machine, MadeFile, Picture, RunReport, Stage, write_report
 from ringlet.report.charts import line_chart, nice_ticks
-from ringlet.report.findings import explain_lag, explain_slowest, explain_worst, verdict
+from ringlet.report.findings import explain_slowest, explain_worst, summary
 from ringlet.report.model import plain
 
 
@@ -132,13 +132,21 @@ def test_properties_of_all_frames_do_not_select_the_worst_one() -> None:
     assert (explain_worst(statistics[:1]) or "").startswith("Frame 1 ")
 
 
-def test_the_verdict_names_failures_or_success() -> None:
-    assert any("Every strand was solved" in sentence for sentence in verdict(frames()))
+def test_the_summary_says_what_was_solved_and_which_curls_changed() -> None:
+    assert any("Every strand was solved" in sentence for sentence in summary(frames()))
     statistics = frames()
-    statistics[0]["nan"], statistics[2]["flips"] = 3, 2
-    sentences = verdict(statistics)
-    assert "do not use" in sentences[0]
-    assert any("flipped: 2" in sentence for sentence in sentences)
+    statistics[2]["flips"] = 2
+    assert any("flipped: 2" in sentence for sentence in summary(statistics))
+
+
+def test_the_page_says_first_whether_the_result_is_usable(tmp_path: Path) -> None:
+    made = report(tmp_path)
+    first = write_report(made, tmp_path)[1].read_text()
+    assert first.index("Usable: no frame of 6 needs a look.") < first.index("What was made")
+    statistics = frames()
+    statistics[4]["nan"] = 3
+    broken = write_report(made.model_copy(update={"statistics": statistics}), tmp_path)[1].read_text()
+    assert broken.index("Do not use this result.") < broken.index("What would help") < broken.index("What was made")
 
 
 @pytest.mark.parametrize(("low", "high"), [(0.0, 1.0), (-3.2, 7.9), (1e-9, 4e-9), (0.0, 0.0), (5.0, 5.0), (0.0, 48.0)])
@@ -167,22 +175,13 @@ def test_the_slowest_frame_is_explained_by_its_excess_iterations() -> None:
     assert explain_slowest(many[:2]) is None and explain_slowest([{"frame": 1.0}] * 5) is None
 
 
-def test_a_body_that_lags_its_animation_is_the_first_thing_reported() -> None:
-    """Nor does the report then say that nothing passed through anything."""
+def test_the_summary_claims_no_more_than_holds_where_a_body_lags() -> None:
     statistics = frames()
     for frame in statistics:
         frame["contact"] = {"violations": 5, "lag": 0.0}
-    assert explain_lag(statistics) is None
-    assert any(sentence.startswith("Nothing passed through anything") for sentence in verdict(statistics))
+    assert any(sentence.startswith("Nothing passed through anything") for sentence in summary(statistics))
     statistics[2]["contact"]["lagging"] = [{"what": "hand", "distance": 2e-3, "locks": [7]}]
-    statistics[3]["contact"]["lagging"] = [{"what": "hand", "distance": 12.5e-3, "locks": [7, 8, 9, 12]}]
-    sentences = verdict(statistics)
-    assert sentences[0] == explain_lag(statistics)
-    assert sentences[0] == (
-        "hand could not arrive in 2 frames, the first of them 3: hand lagged by 12.5 mm in frame 4 by 4 locks "
-        "(7, 8, 9, …); leave it more room, or raise solver.substeps."
-    )
-    assert not any("Nothing passed through anything" in sentence for sentence in sentences)
+    assert not any("Nothing passed through anything" in sentence for sentence in summary(statistics))
 
 
 def test_the_hardest_frame_is_found_beside_a_first_frame_without_a_step() -> None:

@@ -16,6 +16,7 @@ from ringlet.data.files import check_place
 
 if TYPE_CHECKING:
     from ringlet.data.cache import Cache, SimulationRecord
+    from ringlet.report import Verdict
 
 __all__ = ["Run"]
 
@@ -61,7 +62,7 @@ class Run:
         self.warnings: list[str] = []
         self.cache: Cache | SimulationRecord | None = None
         self.slowest: str | None = None
-        self.lag: str | None = None
+        self.verdict: Verdict | None = None
         if self.folder is not None:
             check_place(self.folder / "report.html")
 
@@ -91,12 +92,12 @@ class Run:
 
     def simulated(self, cache: Cache | SimulationRecord) -> None:
         """Notes a simulation: its statistics for the charts, and its report of initial penetration."""
-        from ringlet.report import explain_lag, explain_slowest, start_table, start_warnings
+        from ringlet.report import explain_slowest, judge, start_table, start_warnings
 
         self.cache = cache
         self.slowest = explain_slowest(cache.statistics)
         self.warnings += [*start_warnings(cache.start), *cache.notes]
-        self.lag = explain_lag(cache.statistics)
+        self.verdict = judge(cache.statistics)
         if cache.start:
             self.table("How it started", *start_table(cache.start))
 

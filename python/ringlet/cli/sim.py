@@ -117,11 +117,13 @@ def sim(
         if record.cloths:
             run.count(cloths=len(record.cloths), cloth_points=sum(record.cloths.values()))
     unsaid = [sentence for sentence in run.warnings if sentence not in said]
-    for sentence in [] if as_json else filter(None, [run.lag, *unsaid, run.slowest]):
+    judged = run.verdict
+    assert judged is not None
+    for sentence in [] if as_json else [*judged.lines(), *unsaid]:
         print(sentence)
     start = {name: found for name, found in record.start.items() if name != "marks"}  # these are for pictures
     more = {name: value for name, value in (("start", start), ("notes", record.notes)) if value}
-    wrote(output, run.counts, as_json, slowest=run.slowest, **more)
+    wrote(output, run.counts, as_json, verdict=judged.json(), slowest=run.slowest, **more)
 
 
 def _warn(run: ringlet.Run, said: list[str], sentence: str) -> None:

@@ -11,7 +11,7 @@ from ringlet import api
 from ringlet.api.progress import Progress
 from ringlet.data.files import check_place
 from ringlet.host import requests, texts
-from ringlet.report import explain_lag, start_warnings
+from ringlet.report import judge, start_warnings
 
 Warn = Callable[[str], None]
 
@@ -39,8 +39,8 @@ def simulate(request: requests.Simulate, progress: Progress, warn: Warn) -> dict
             on_warning=warn,
         )
         shutil.rmtree(part, ignore_errors=True)
-    lag = explain_lag(record.statistics)
-    notes = [*start_warnings(record.start), *record.notes, *([lag] if lag else [])]
+    verdict = judge(record.statistics)
+    notes = [*start_warnings(record.start), *record.notes, *(verdict.lines() if verdict.findings else [])]
     return {"path": str(cache), "frames": record.frames, "notes": notes, "locks": len(groom.locks)}
 
 

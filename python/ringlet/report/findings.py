@@ -56,15 +56,11 @@ def worst_frame(statistics: Statistics) -> int | None:
     return first
 
 
-def verdict(statistics: Statistics) -> list[str]:
-    """Result of a simulation in a few sentences, the most severe first."""
+def summary(statistics: Statistics) -> list[str]:
+    """What a simulation did, in a few sentences; ``judge`` says whether it can be used."""
     if not statistics:
         return []
     sentences = []
-    if missed := explain_lag(statistics):
-        sentences.append(missed)
-    if broken := total(statistics, "nan"):
-        sentences.append(f"{_strands(broken)} ended in numbers that are not finite: do not use this result.")
     has_contact = any("contact" in frame for frame in statistics)
     unconverged = total(statistics, "unconverged")
     if unconverged and has_contact:
@@ -97,7 +93,7 @@ def verdict(statistics: Statistics) -> list[str]:
         )
         sentences.append(
             f"Nothing passed through anything: {violations}."
-            if missed is None
+            if not any(value(frame, "contact.lagging") for frame in statistics)
             else f"{violations[0].upper()}{violations[1:]}; what lagged is elsewhere in its animation, where hair "
             "may be inside it."
         )
@@ -109,32 +105,6 @@ def verdict(statistics: Statistics) -> list[str]:
     elif curl["flips"] == 0:
         sentences.append("No curl flipped over or changed its number of turns.")
     return sentences
-
-
-def explain_lag(statistics: Statistics) -> str | None:
-    """One sentence about bodies, pins and roots that did not arrive; None where all did."""
-    frames = [k for k, frame in enumerate(statistics) if value(frame, "contact.lagging")]
-    if not frames:
-        return None
-    index, worst = max(
-        ((k, entry) for k in frames for entry in value(statistics[k], "contact.lagging")),
-        key=lambda found: found[1]["distance"],
-    )
-    names = sorted({entry["what"] for k in frames for entry in value(statistics[k], "contact.lagging")})
-    count = len(frames)
-    return (
-        f"{' and '.join(names)} could not arrive in {count} {'frame' if count == 1 else 'frames'}, the first of them "
-        f"{frame_number(statistics, frames[0])}: {worst['what']} lagged by {1e3 * worst['distance']:.3g} mm in frame "
-        f"{frame_number(statistics, index)}{_by_locks(worst['locks'])}; leave it more room, or raise solver.substeps."
-    )
-
-
-def _by_locks(locks: list[int]) -> str:
-    """Which locks hold something back, the first three of them."""
-    if not locks:
-        return ""
-    shown = ", ".join(str(lock) for lock in locks[:3])
-    return f" by {len(locks)} {'lock' if len(locks) == 1 else 'locks'} ({shown}{', …' if len(locks) > 3 else ''})"
 
 
 def explain_worst(statistics: Statistics) -> str | None:
@@ -188,10 +158,6 @@ _COSTS = {
     "contact.linear_iterations": ("iterations of conjugate gradients", 1.0, 0),
     **{f"contact.{name}_ms": (f"seconds of {name}", 1e-3, 2) for name in PHASES},
 }
-
-
-def _strands(count: int) -> str:
-    return "One strand" if count == 1 else f"{count} strands"
 
 
 def _times(count: int) -> str:

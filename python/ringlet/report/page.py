@@ -12,8 +12,9 @@ from PIL import Image
 
 from ringlet.data.errors import UserError
 from ringlet.report.charts import line_chart
-from ringlet.report.findings import PHASES, explain_slowest, explain_worst, series, total, value, verdict
+from ringlet.report.findings import PHASES, explain_slowest, explain_worst, series, summary, total, value
 from ringlet.report.model import MadeFile, Picture, RunReport, Stage, Table
+from ringlet.report.verdict import Finding, judge, ranges
 
 STYLE = Path(__file__).with_name("style.css")
 
@@ -48,6 +49,7 @@ def page(report: RunReport) -> str:
         section
         for section in (
             _header(report),
+            _verdict(report),
             _outcome(report),
             *(figure(picture) for picture in report.pictures[1:]),
             *(table(each) for each in report.tables),
@@ -94,13 +96,29 @@ def _header(report: RunReport) -> str:
     )
 
 
+def _verdict(report: RunReport) -> str:
+    """Section on whether the simulation can be used, and what to look at."""
+    if not report.statistics:
+        return ""
+    verdict = judge(report.statistics)
+
+    def row(finding: Finding) -> list[str]:
+        return [finding.what, ranges(finding.frames), ", ".join(map(str, finding.locks)) or "–", finding.remedy]
+
+    rows = [row(finding) for finding in verdict.findings]
+    columns = ["What is wrong", "Frames", "Locks", "What would help"]
+    looks = table(Table(title="What to look at", columns=columns, rows=rows)) if rows else ""
+    kind = "warning" if rows else "usable"
+    return f'<section><h2 class="{kind}">{escape(verdict.headline)}</h2></section>{looks}'
+
+
 def _outcome(report: RunReport) -> str:
-    """Section with the first picture, counts, warnings and the verdict."""
+    """Section with the first picture, counts, warnings and a summary."""
     numbers = "".join(
         f"<div><dd>{count:,}</dd><dt>{escape(what.replace('_', ' '))}</dt></div>".replace(",", "\u202f")
         for what, count in report.counts.items()
     )
-    sentences = "".join(f"<p>{escape(sentence)}</p>" for sentence in verdict(report.statistics))
+    sentences = "".join(f"<p>{escape(sentence)}</p>" for sentence in summary(report.statistics))
     warnings = "".join(f'<p class="warning">{escape(warning)}</p>' for warning in report.warnings)
     text = (f'<dl class="counts">{numbers}</dl>' if numbers else "") + warnings + sentences
     hero = figure(report.pictures[0]) if report.pictures else ""
