@@ -24,7 +24,6 @@ PAGES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "bench/README.md", "exa
 WAITING: set[str] = {
     "docs/curls.md",
     "docs/groom.md",
-    "docs/pictures.md",
     "docs/styles.md",
     "docs/viewer.md",
 }
