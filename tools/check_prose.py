@@ -1,7 +1,7 @@
 """Checks the length of paragraphs and sentences in the documents.
 
-Usage: python tools/check_prose.py [--count] [PAGE ...]. Checks all pages that are held to it if none is named. Prints
-one line per hit and exits with 1 if there is one; --count prints the hits of each page.
+Usage: python tools/check_prose.py [--count] [PAGE ...]. Checks all pages if none is named. Prints one line per hit and
+exits with 1 if there is one; --count prints the hits of each page.
 
 A paragraph is a block of lines of text or one list item. Code, tables, headings, directives, HTML, formulas between
 dollar signs, images and the targets of links do not count; inline code counts as one word.
@@ -20,10 +20,6 @@ from typing import NamedTuple
 from check_words import LONGEST, WORD
 
 PAGES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "bench/README.md", "examples/README.md", "docs/**/*.md")
-# Pages that still wait for their rewrite and are not checked. The list only shrinks.
-WAITING: set[str] = {
-    "docs/viewer.md",
-}
 LONGEST_PARAGRAPH = 120  # words
 SENTENCE_END = re.compile(r"[.!?][)\"'’”*_]*\s")
 
@@ -112,7 +108,7 @@ def main() -> int:
     parser.add_argument("--count", action="store_true")
     options = parser.parse_args()
     root = Path(__file__).parents[1]
-    chosen = options.pages or [page for page in pages(root) if page not in WAITING]
+    chosen = options.pages or pages(root)
     found = [(page, *hit) for page in chosen for hit in hits((root / page).read_text())]
     lines = [f"{page}:{line}: {complaint}\n" for page, line, complaint in found]
     if options.count:
