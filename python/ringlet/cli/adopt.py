@@ -33,7 +33,12 @@ def adopt(
     locks: Annotated[
         int | None,
         typer.Option(
-            "--locks", min=1, max=1_000_000, metavar="N", help="Number of locks; one a clump.", show_default=False
+            "--locks",
+            min=1,
+            max=1_000_000,
+            metavar="N",
+            help="Number of locks; by default one for each clump.",
+            show_default=False,
         ),
     ] = None,
     from_unit: FromUnit = None,
@@ -42,7 +47,7 @@ def adopt(
     as_json: Json = False,
     threads: Threads = None,
 ) -> None:
-    """Makes a recipe of finished HAIR of any program, so that it can be simulated as it is, and changed.
+    """Turns finished HAIR of any program into a recipe that can be simulated as it is, and edited.
 
     Clumps become locks, their curls become settings, and what these do not fit is kept.
 

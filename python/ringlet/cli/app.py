@@ -141,7 +141,7 @@ def front(
         bool, typer.Option("--version", callback=show_version, is_eager=True, help="Print the version.")
     ] = False,
     debug: Annotated[
-        bool, typer.Option("--debug", callback=show_tracebacks, help="Show the traceback of a mistake in Ringlet.")
+        bool, typer.Option("--debug", callback=show_tracebacks, help="Show the traceback of a bug in Ringlet.")
     ] = False,
 ) -> None:
     if context.invoked_subcommand is None:

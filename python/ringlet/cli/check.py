@@ -31,7 +31,11 @@ def check(
     picture: Annotated[
         Path | None,
         typer.Option(
-            "--picture", callback=picture_file, metavar="PNG", help="A picture of the places.", show_default=False
+            "--picture",
+            callback=picture_file,
+            metavar="PNG",
+            help="Write a picture that marks the intersections.",
+            show_default=False,
         ),
     ] = None,
     root_depth: Annotated[
@@ -45,7 +49,7 @@ def check(
             metavar="MM",
             min=0,
             max=1000,
-            help="How far from the root that goes, along the lock.",
+            help="Length along the lock, from its root, in which that depth is allowed.",
         ),
     ] = 5.0,
     thickness: Annotated[
@@ -65,15 +69,15 @@ def check(
             metavar="PART",
             min=0,
             max=1,
-            help="Part of the radius of their own at which locs and strands of braids touch.",
+            help="Fraction of their own radius at which locs and strands of braids touch.",
         ),
     ] = 0.85,
     as_json: Json = False,
     threads: Threads = None,
 ) -> None:
-    """Counts what of a GROOM is in the scalp, in the body and in other hair, how deep and where.
+    """Finds where locks of a GROOM intersect the scalp, the body or other hair, and how deep.
 
-    Exits with 1 if something is. Example: ringlet check groom.usdc --fix -o fixed.usdc --picture check.png
+    Exits with 1 if there are any. Example: ringlet check groom.usdc --fix -o fixed.usdc --picture check.png
     """
     if fix and output is None:
         raise ringlet.UserError("--fix: needs --output FIXED for the repaired groom")

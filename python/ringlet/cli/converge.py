@@ -23,22 +23,25 @@ def converge(
             "-o",
             callback=ending_in(".html"),
             metavar="PAGE",
-            help="A page of the numbers and of the tips' paths to write.",
+            help="Write the numbers and the paths of the tips to this HTML page.",
             show_default=False,
         ),
     ] = None,
     groom: GroomOfShot = None,
     variant: Variant = None,
     frames: Frames = None,
-    enough: Annotated[float, typer.Option("--enough", min=0.5, max=1.0, help="Part of the motion to keep.")] = 0.95,
+    enough: Annotated[
+        float,
+        typer.Option("--enough", min=0.5, max=1.0, help="Fraction of the converged motion that counts as enough."),
+    ] = 0.95,
     allow_stale: AllowStale = False,
     as_json: Json = False,
     threads: Threads = None,
 ) -> None:
-    """Plays a few frames of a SHOT at several settings of its solver, and says which to use.
+    """Simulates a few frames of a SHOT at several settings of its solver, and recommends one.
 
-    Compared are the motion that hair keeps and the distance from a run that converges, 60 iterations to 0.02. Up to the
-    first of the frames the shot's own setting is used; choose frames in the midst of the motion.
+    It compares how much of its motion the hair keeps, and its distance from a converged run: 60 iterations to 0.02.
+    Frames before the first of them have the shot's own settings; choose frames in the middle of the motion.
 
     Examples: ringlet converge nod.shot.toml --frames 19:27 · ringlet converge nod.shot.toml -o converge.html
     """

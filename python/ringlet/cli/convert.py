@@ -30,7 +30,7 @@ def convert(
     ] = None,
     bodies: Annotated[bool, typer.Option("--bodies/--no-bodies", help="Write the head and other surfaces.")] = True,
     fraction: Annotated[
-        float, typer.Option("--fraction", min=0.0001, max=1.0, help="Share of the curves to keep.")
+        float, typer.Option("--fraction", min=0.0001, max=1.0, help="Fraction of the curves to keep.")
     ] = 1.0,
     wider: Annotated[
         bool, typer.Option("--wider", help="With --fraction: wider curves, which cover as much as all of them.")

@@ -21,7 +21,7 @@ def demo(
     as_json: Json = False,
     threads: Threads = None,
 ) -> None:
-    """Grooms, simulates and pictures the example: a child's head full of tight curls.
+    """Grooms, simulates and renders the example: a child's head full of tight curls.
 
     Example: ringlet demo -o out/demo
     """

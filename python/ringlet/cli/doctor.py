@@ -14,12 +14,12 @@ from ringlet.cli.progress import shown_progress
 
 def doctor(
     self_test: Annotated[
-        bool, typer.Option("--self-test/--no-self-test", help="Groom, simulate, write, read and draw a little.")
+        bool, typer.Option("--self-test/--no-self-test", help="Groom, simulate, write, read and render a small scene.")
     ] = True,
     as_json: Json = False,
     threads: Threads = None,
 ) -> None:
-    """Tells what is installed, which processor, threads and optional parts are used, and tries it out.
+    """Reports the installation, the processor, threads and optional parts, and runs a self-test.
 
     It takes about ten seconds; exits with 1 where something does not work.
 

@@ -15,21 +15,21 @@ from ringlet.cli.output import print_json, print_table
 
 def edit(
     recipe: Annotated[Path, typer.Argument(metavar="RECIPE", help="The recipe, a TOML file that names `edits`.")],
-    freeze: Annotated[list[int] | None, lock_option("--freeze", "Take a lock out of the recipe as it is now.")] = None,
+    freeze: Annotated[list[int] | None, lock_option("--freeze", "Isolate a lock in its present shape.")] = None,
     settings: Annotated[
         list[str] | None,
         typer.Option(
             "--set",
             metavar="LOCK:NAME=VALUE",
-            help="A setting of one lock alone, such as 12000003:curl.width=8mm.",
+            help="Set a value for one lock alone, such as 12000003:curl.width=8mm.",
             show_default=False,
         ),
     ] = None,
-    release: Annotated[list[int] | None, lock_option("--release", "Give a lock back to the recipe.")] = None,
-    release_all: Annotated[bool, typer.Option("--release-all", help="Give all locks back to the recipe.")] = False,
+    release: Annotated[list[int] | None, lock_option("--release", "Return a lock to the recipe.")] = None,
+    release_all: Annotated[bool, typer.Option("--release-all", help="Return all locks to the recipe.")] = False,
     as_json: Json = False,
 ) -> None:
-    """Takes locks out of a RECIPE, gives them back, and lists those that are out.
+    """Isolates locks of a RECIPE for edits by hand, returns them to the recipe, and lists them.
 
     Example: ringlet edit curls.recipe.toml --freeze 12000003
     """

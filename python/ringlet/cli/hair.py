@@ -25,7 +25,7 @@ def hair(
         typer.Option(
             "--cache",
             metavar="CACHE",
-            help="Simulated guides, of another file; without any the hairs are at rest.",
+            help="Cache of simulated groom guides; without one the hairs are at rest.",
             show_default=False,
         ),
     ] = None,
@@ -51,7 +51,7 @@ def hair(
         typer.Option(
             "--camera",
             metavar="PRIM",
-            help="Thin hairs out, and widen them, as far as this camera does not see it.",
+            help="Make fewer, wider hairs, as far as this camera cannot see the difference.",
             show_default=False,
         ),
     ] = None,
@@ -72,7 +72,9 @@ def hair(
     ] = False,
     on_demand: Annotated[
         bool,
-        typer.Option("--on-demand", help="Write what hairs are made of while they are rendered, not their points."),
+        typer.Option(
+            "--on-demand", help="Write hairs that readers and renderers generate on demand, without their points."
+        ),
     ] = False,
     velocities: Annotated[
         bool, typer.Option("--velocities", help="Write the velocities of points, which doubles the size of the file.")
@@ -81,7 +83,7 @@ def hair(
     as_json: Json = False,
     threads: Threads = None,
 ) -> None:
-    """Makes the hairs of a GROOM, frame by frame where there is a cache.
+    """Makes the dense hairs of a GROOM, in each frame of its cache if it has one.
 
     A GROOM with hairs on demand is expanded to hairs with points.
 

@@ -40,7 +40,7 @@ def loft(
     as_json: Json = False,
     threads: Threads = None,
 ) -> None:
-    """Pre-bends the shape that the locks of a SHOT remember, so that what hangs under gravity is the groom.
+    """Computes rest shapes of a SHOT with which locks that hang under gravity have the shape of the groom.
 
     The locks hang still under the forces of the shot, in the rest pose of the scalp. Where REST is there already, only
     locks that have changed since are lofted. The shot uses it with [rest] mode = "lofted" or "equilibrium".

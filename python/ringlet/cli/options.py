@@ -55,11 +55,15 @@ GroomOfShot = Annotated[
     typer.Option("--groom", metavar="GROOM", help="A groom to use in place of the shot's.", show_default=False),
 ]
 AllowStale = Annotated[
-    bool, typer.Option("--allow-stale", help="Use a lofted shape although what it was made from has changed.")
+    bool,
+    typer.Option(
+        "--allow-stale",
+        help="Use rest shapes although the groom or the settings that they were made from have changed.",
+    ),
 ]
 Fraction = Annotated[
     float,
-    typer.Option("--fraction", min=0.001, max=1.0, help="Share of the hairs to make, for a quick look."),
+    typer.Option("--fraction", min=0.001, max=1.0, help="Fraction of the hairs to make, for a quick look."),
 ]
 
 

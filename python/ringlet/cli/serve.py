@@ -10,7 +10,7 @@ from ringlet.cli.options import Threads
 
 
 def serve(threads: Threads = None) -> None:
-    """Answers requests of another program, such as Blender, on the standard input and output.
+    """Serves requests of another program, such as Blender, over standard input and output.
 
     The messages are in docs/host.md. It ends with its input.
     """

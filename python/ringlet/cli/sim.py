@@ -40,12 +40,12 @@ def sim(
             min=1,
             max=1_000_000,
             metavar="N",
-            help="Of finished hair without a recipe: strands to simulate, which carry the rest; all by default.",
+            help="Of finished hair without a recipe, strands to simulate, which the others follow; all by default.",
             show_default=False,
         ),
     ] = None,
     resume: Annotated[
-        bool, typer.Option("--resume", help="Go on with a run that was broken off; its result is the same to the bit.")
+        bool, typer.Option("--resume", help="Continue a run that was interrupted; the result is the same to the bit.")
     ] = False,
     contacts: Annotated[
         Path | None,
@@ -53,7 +53,7 @@ def sim(
             "--contacts",
             callback=usd_file,
             metavar="FILE",
-            help="A USD file to write what touches to, as coloured points over the cache.",
+            help="Write contacts to this USD file, as coloured points over the cache.",
             show_default=False,
         ),
     ] = None,

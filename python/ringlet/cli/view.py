@@ -18,18 +18,18 @@ def view(
         typer.Option("--port", min=1, max=65535, help="Port; 8642 or a free one by default.", show_default=False),
     ] = None,
     host: Annotated[
-        str, typer.Option("--host", help="Where to listen. Elsewhere than on this computer, the page needs a token.")
+        str, typer.Option("--host", help="Address to listen on. Access from other computers needs a token.")
     ] = "127.0.0.1",
     project: Annotated[
         Path | None,
         typer.Option(
-            "--project", metavar="FOLDER", help="What the page may read and write; the file's folder by default."
+            "--project", metavar="FOLDER", help="Folder that the page may read and write; that of FILE by default."
         ),
     ] = None,
     no_browser: Annotated[bool, typer.Option("--no-browser", help="Do not open a browser.")] = False,
     threads: Threads = None,
 ) -> None:
-    """Opens a page in the browser to change a look and see it move.
+    """Opens the review page in a browser: change the look, and watch it move.
 
     Examples: ringlet view curls.recipe.toml · ringlet view nod.shot.toml --port 9000 · ringlet view hair.usdc
     """

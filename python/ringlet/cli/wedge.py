@@ -25,11 +25,12 @@ def wedge(
         ),
     ] = None,
     output: Annotated[
-        Path, typer.Option("--output", "-o", metavar="FOLDER", help="The folder to write to, a folder for each task.")
+        Path,
+        typer.Option("--output", "-o", metavar="FOLDER", help="Folder for the results, with a folder for each task."),
     ] = Path("out/wedge"),
     frames: Frames = None,
     frame: Annotated[int | None, frame_option("The frame to draw and to compare; the last by default.")] = None,
-    picture: Annotated[bool, typer.Option("--picture/--no-picture", help="Draw a frame of each.")] = True,
+    picture: Annotated[bool, typer.Option("--picture/--no-picture", help="Render a frame of each task.")] = True,
     scheduler: Annotated[
         str | None,
         typer.Option(
@@ -45,11 +46,13 @@ def wedge(
             "--workers",
             min=1,
             max=ringlet.limits.WORKERS,
-            help="Processes here; as many as processors by default.",
+            help="Worker processes on this machine; one for each processor by default.",
             show_default=False,
         ),
     ] = None,
-    here: Annotated[bool, typer.Option("--here", help="In this process, one after the other, without dask.")] = False,
+    here: Annotated[
+        bool, typer.Option("--here", help="Run tasks one after the other in this process, without dask.")
+    ] = False,
     threads: Annotated[
         int | None,
         typer.Option(
@@ -66,16 +69,16 @@ def wedge(
             "--retries",
             min=0,
             max=ringlet.limits.RETRIES,
-            help="How often a task may break off or lose its worker.",
+            help="How often a task is tried again after it fails or loses its worker.",
         ),
     ] = 2,
-    compare: Annotated[bool, typer.Option("--compare", help="Only write the page again from what is there.")] = False,
+    compare: Annotated[bool, typer.Option("--compare", help="Only rebuild the page from results that exist.")] = False,
     openjd: Annotated[
         Path | None,
         typer.Option(
             "--openjd",
             metavar="FILE",
-            help="Only write a template of Open Job Description, for a render farm.",
+            help="Only write an Open Job Description template, for a render farm.",
             show_default=False,
         ),
     ] = None,
@@ -83,10 +86,10 @@ def wedge(
 ) -> None:
     """Simulates a SHOT with every combination of settings and compares the results on a page.
 
-    Each task has a folder with its shot, cache, log and picture; FOLDER/wedge.html shows them all. The same command
-    again does what is left: what is done is kept, what was broken off goes on, and more values add to what is there.
+    Each task has a folder with its shot, cache, log and picture; FOLDER/wedge.html shows them all. Run the same command
+    again to continue: finished tasks are kept, interrupted ones resume, and new values add tasks.
 
-    Exits with 1 if a task could not be done.
+    Exits with 1 if a task fails.
 
     Examples: ringlet wedge nod.shot.toml --set strands.bend_scale=1,2,4 --set contact.friction=0.1,0.3 ·
     ringlet wedge nod.shot.toml --set rest.mode=none,lofted --openjd wedge.template.json
