@@ -49,14 +49,25 @@ SurfacePoint closest_point(const TriangleMesh &mesh, int triangle, const Vec3 &p
 
 TriangleTree::TriangleTree(const TriangleMesh &mesh, View<int> triangles)
     : mesh_(mesh), order_(triangles.begin(), triangles.end()) {
-    nodes_.reserve(order_.size());
-    if (!order_.empty()) build(0, static_cast<int>(order_.size()));
+    build();
 }
 
 TriangleTree::TriangleTree(const TriangleMesh &mesh) : mesh_(mesh), order_(mesh.triangles.size()) {
     std::iota(order_.begin(), order_.end(), 0);
+    build();
+}
+
+void TriangleTree::build() {
+    if (order_.empty()) return;
     nodes_.reserve(order_.size());
-    if (!order_.empty()) build(0, static_cast<int>(order_.size()));
+    build(0, static_cast<int>(order_.size()));
+    spheres_.reserve(order_.size());
+    for (const int t : order_) {
+        const Vec3 centre = (mesh_.corner(t, 0) + mesh_.corner(t, 1) + mesh_.corner(t, 2)) / 3.0;
+        double radius = 0.0;
+        for (int k = 0; k < 3; ++k) radius = std::max(radius, (mesh_.corner(t, k) - centre).norm());
+        spheres_.push_back({centre, radius});
+    }
 }
 
 int TriangleTree::build(int begin, int end) {
@@ -89,7 +100,11 @@ int TriangleTree::build(int begin, int end) {
 SurfacePoint TriangleTree::closest(const Vec3 &p, double within) const {
     SurfacePoint nearest;
     if (nodes_.empty()) return nearest;
-    double bound2 = within * within;
+    double bound = within, bound2 = within * within;
+    const auto is_farther = [&](const Sphere &sphere) {
+        const double reach = bound + (1.0 + 1e-12) * sphere.radius; // for rounding
+        return (p - sphere.centre).squaredNorm() > reach * reach;
+    };
     struct Visit {
         int node;
         double distance2;
@@ -103,10 +118,12 @@ SurfacePoint TriangleTree::closest(const Vec3 &p, double within) const {
         const Node &node = nodes_[visit.node];
         if (node.count > 0) {
             for (int i = node.begin; i < node.begin + node.count; ++i) {
+                if (is_farther(spheres_[i])) continue;
                 const SurfacePoint found = closest_point(mesh_, order_[i], p);
                 if (found.distance < nearest.distance && found.distance * found.distance <= bound2) {
                     nearest = found;
-                    bound2 = found.distance * found.distance;
+                    bound = found.distance;
+                    bound2 = bound * bound;
                 }
             }
             continue;

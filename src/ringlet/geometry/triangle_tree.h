@@ -35,10 +35,16 @@ private:
         Vec3 low, high;
         int begin, count; // leaf: triangles order_[begin, begin + count); inner (count 0): children next to it and at begin
     };
+    struct Sphere { // encloses a triangle
+        Vec3 centre;
+        double radius;
+    };
+    void build();
     int build(int begin, int end);
 
     TriangleMesh mesh_;
     std::vector<int> order_;
+    std::vector<Sphere> spheres_; // in this order
     std::vector<Node> nodes_;
 };
 

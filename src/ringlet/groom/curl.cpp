@@ -114,16 +114,19 @@ private:
     // Finds the fraction of the shape whose curl has the length of the shape, by regula falsi (Illinois method).
     void shorten(double over_high, std::span<Vec3> result) {
         double low = 0.0, high = 1.0, over_low = -spine_.length();
+        int moved = 0; // the end of the interval that the last step moved: −1 low, 1 high
         for (int k = 0; k < 30; ++k) {
             const double x = (low * over_high - high * over_low) / (over_high - over_low);
             const double over = wind(x, result) - spine_.length();
             if (std::abs(over) < 1e-6 * spine_.length()) return;
             if (over < 0.0) {
                 low = x, over_low = over;
-                over_high *= 0.5;
+                if (moved < 0) over_high *= 0.5;
+                moved = -1;
             } else {
                 high = x, over_high = over;
-                over_low *= 0.5;
+                if (moved > 0) over_low *= 0.5;
+                moved = 1;
             }
         }
     }
