@@ -4,26 +4,29 @@
 import type { Box } from "../view/box";
 import { fits } from "../view/looks";
 
+const SMALL = 900; // width of a window in which what floats over the picture would cover the subject [pixels]
 const GAP = 14; // between a panel and what is next to it [pixels]
 
 export class ClearArea {
   private box = "";
 
-  /** above, below: bars at the edges; sides: panels in columns on the left and on the right */
+  /** above, below: bars at the edges; over: bars at the top of the picture; sides: panels in columns on both sides */
   constructor(
     private readonly above: HTMLElement[],
+    private readonly over: HTMLElement[],
     private readonly sides: HTMLElement[],
     private readonly below: HTMLElement[],
     private readonly changed: (clear: Box) => void,
   ) {
     const observer = new ResizeObserver(() => this.measure());
-    for (const element of [document.documentElement, ...above, ...sides, ...below]) observer.observe(element);
+    for (const element of [document.documentElement, ...above, ...over, ...sides, ...below]) observer.observe(element);
   }
 
   /** The largest of two rectangles: between the columns, and below them. */
   private measure(): void {
     const { innerWidth, innerHeight } = window;
-    const top = Math.max(0, ...this.above.flatMap(seen).map(({ bottom }) => bottom));
+    const first = innerWidth > SMALL ? this.above : [...this.above, ...this.over];
+    const top = Math.max(0, ...first.flatMap(seen).map(({ bottom }) => bottom));
     let bottom = Math.min(innerHeight, ...this.below.flatMap(seen).map(({ top }) => top - GAP / 2));
     const edge = innerHeight - bottom + GAP / 2;
     let [left, right, under] = [0, innerWidth, top];
