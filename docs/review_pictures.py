@@ -29,10 +29,10 @@ from review import CHROMIUM, FLAGS, PATIENCE, Review, Server
 DOCS = Path(__file__).parent
 IMAGES, EXAMPLE = DOCS / "images", DOCS.parent / "examples/child"
 DESKTOP, WIDE, TABLET, LYING, PHONE = (1280, 800), (1920, 1080), (820, 1180), (1180, 820), (390, 844)
-COUNTS = {r"per_lock = 36": "per_lock = 24"}  # a picture in software takes seconds
+COUNTS = {r"per_lock = 36": "per_lock = 16"}  # a picture in software takes seconds
 FEW = {
     r"count = 1050": "count = 300",
-    r"per_lock = 36": "per_lock = 4",
+    r"per_lock = \d+": "per_lock = 4",
     r"frames = \[1, 30\]": "frames = [1, 4]",
 }  # where panels are looked at
 SOME = {r"count = 1050": "count = 620", r"per_lock = 36": "per_lock = 12"}  # in a movie
@@ -58,7 +58,7 @@ class Page(Review):
         """The page as it is, with as many hairs as it has drawn so far."""
         self.settled()
         self.laid_out()
-        return Image.open(io.BytesIO(self.page.screenshot())).convert("RGB")
+        return Image.open(io.BytesIO(self.page.screenshot(timeout=600_000))).convert("RGB")
 
     def taken(self) -> Image.Image:
         """The page once all of its hairs are in the picture."""
@@ -66,7 +66,7 @@ class Page(Review):
         self.page.add_style_tag(content=TIMELESS)
         self.laid_out()
         self.get("ringlet.viewer.drawNow()")  # as fine as the hairs allow, however slow the machine is
-        return Image.open(io.BytesIO(self.page.screenshot())).convert("RGB")
+        return Image.open(io.BytesIO(self.page.screenshot(timeout=600_000))).convert("RGB")
 
 
 @contextmanager
