@@ -36,7 +36,7 @@ FEW = {
     r"frames = \[1, 30\]": "frames = [1, 4]",
 }  # where panels are looked at
 SOME = {r"count = 1050": "count = 620", r"per_lock = 36": "per_lock = 12"}  # in a movie
-TIMELESS = "[data-number=draw] { display: none }"  # drawing in software says nothing about a graphics card
+TIMELESS = "[data-number=draw], [data-number=groom] { display: none }"  # times of a busy machine in software
 
 
 class Page(Review):
@@ -99,7 +99,9 @@ def opened(browser: Browser, server: Server, size: tuple[int, int], theme: str, 
 def page_of(browser: Browser, file: str, size: tuple[int, int], theme: str, touch: bool = False) -> Iterator[Page]:
     """A page of a review of its own."""
     with served(file) as server:
-        yield opened(browser, server, size, theme, touch)
+        page = opened(browser, server, size, theme, touch)
+        yield page
+        page.page.context.close()  # it draws on otherwise
 
 
 def review(browser: Browser) -> Image.Image:
