@@ -28,7 +28,14 @@ from review import CHROMIUM, FLAGS, PATIENCE, Review, Server
 
 DOCS = Path(__file__).parent
 IMAGES, EXAMPLE = DOCS / "images", DOCS.parent / "examples/child"
-DESKTOP, WIDE, TABLET, LYING, PHONE = (1280, 800), (1920, 1080), (820, 1180), (1180, 820), (390, 844)
+SMALL, DESKTOP, WIDE, TABLET, LYING, PHONE = (
+    (1000, 640),
+    (1280, 800),
+    (1920, 1080),
+    (820, 1180),
+    (1180, 820),
+    (390, 844),
+)
 COUNTS = {r"per_lock = 36": "per_lock = 16"}  # a picture in software takes seconds
 FEW = {
     r"count = 1050": "count = 300",
@@ -113,9 +120,10 @@ def review(browser: Browser) -> Image.Image:
 def lock(browser: Browser) -> Image.Image:
     with page_of(browser, "curls.recipe.toml", DESKTOP, "dark") as page:
         page.choose("curl")
-        page.get("ringlet.lock.choose(40)")
+        page.page.mouse.click(540, 220)  # hair over the forehead
+        page.until("ringlet.lock.rows.length == 1")
         page.press("Isolate")
-        page.until("ringlet.viewer.hair.a.locks.marked[40] == 1")
+        page.until("ringlet.viewer.hair.a.locks.marked[ringlet.lock.rows[0]] == 1")
         page.page.get_by_text("values of this lock alone").click()
         return page.taken()
 
@@ -123,7 +131,6 @@ def lock(browser: Browser) -> Image.Image:
 def sculpt(browser: Browser) -> Image.Image:
     with page_of(browser, "curls.recipe.toml", DESKTOP, "dark") as page:
         page.page.keyboard.press("b")
-        page.press("comb")
         page.stroke((640, 190), (690, 150), (760, 130))
         page.until("ringlet.model.documents.recipe.edits.includes('[[sculpt]]')")
         return page.taken()
@@ -157,9 +164,9 @@ class Movie:
 
     def still(self, ms: int) -> None:
         """Adds the pages as they are, for a time [ms]."""
-        both = Image.new("RGB", (1600, 500))
+        both = Image.new("RGB", (1600, 512))
         for k, page in enumerate(self.pages):
-            both.paste(page.taken().resize((800, 500), Image.Resampling.LANCZOS), (800 * k, 0))
+            both.paste(page.taken().resize((800, 512), Image.Resampling.LANCZOS), (800 * k, 0))
         self.stills.append(both)
         self.times.append(ms)
 
@@ -170,7 +177,7 @@ class Movie:
 def people(browser: Browser) -> Movie:
     """A review of two pages: who leads on the left, who follows on the right. A note, a snapshot, a wipe."""
     with served("curls.recipe.toml", SOME) as server:
-        one, two = (opened(browser, server, DESKTOP, "dark") for _ in range(2))
+        one, two = (opened(browser, server, SMALL, "dark") for _ in range(2))
         movie = Movie(one, two)
         for page, name in ((one, "Ada"), (two, "Ben")):
             page.page.get_by_label("Your name for them").fill(name)
@@ -178,13 +185,13 @@ def people(browser: Browser) -> Movie:
         one.choose("guides")
         two.until("ringlet.model.chosen.place[0] == 'guides'")
         movie.still(1500)
-        for _ in range(4):
-            one.get("(ringlet.viewer.orbit(-0.12, 0.01), ringlet.viewer.move())")
-            movie.still(250)
+        for _ in range(2):
+            one.get("(ringlet.viewer.orbit(-0.2, 0.02), ringlet.viewer.move())")
+            movie.still(500)
         two.page.keyboard.press("a")
         two.page.get_by_label("Text of the note").fill("Shorter, to see the ear")
         two.press("Arrow")
-        two.stroke((880, 260), (800, 330))
+        two.stroke((660, 250), (600, 300))
         movie.still(2000)
         two.press("Keep")
         one.until("ringlet.model.notes.length == 1")
@@ -195,26 +202,21 @@ def people(browser: Browser) -> Movie:
         one.page.keyboard.press("s")
         one.until("ringlet.model.snapshots.length == 1 && ringlet.model.pictures.size == 1")
         movie.still(1500)
-        for length in (7.6, 6.8, 6):
-            change = (
-                f"{{ kind: 'set', file: 'recipe', changes: [[['guides', 'length', 'value'], {length}]], gesture: 1 }}"
-            )
-            one.get(f"ringlet.model.say({change})")
-            for page in movie.pages:
-                page.until(f"ringlet.model.value('recipe', ['guides', 'length', 'value']) == {length}")
-            movie.still(400)
+        shorter = "{ kind: 'set', file: 'recipe', changes: [[['guides', 'length', 'value'], 6]], gesture: 1 }"
+        one.get(f"ringlet.model.say({shorter})")
+        for page in movie.pages:
+            page.until("ringlet.model.value('recipe', ['guides', 'length', 'value']) == 6")
+        movie.still(1200)
         one.page.get_by_role("button", name="Compare with ‘").click()
         for page in movie.pages:
             page.until("ringlet.viewer.compared && ringlet.viewer.hair.b.table")
         one.page.keyboard.press("t")
-        movie.still(1500)
         one.page.get_by_label("Arrangement of the two looks").select_option("wipe")
         line = one.page.get_by_label("Place of the wipe")
-        for press in (0, 6, 6, 6):
-            for _ in range(press):
+        for presses in (0, 6):
+            for _ in range(presses):
                 line.press("ArrowRight")
-            movie.still(500)
-        movie.times[-1] = 2500
+            movie.still(1500)
         return movie
 
 
