@@ -36,10 +36,10 @@ def run(locks: int = 1389, per_lock: int = 36, points: int = 60, steps: int = 12
     """
     clock = ringlet.Clock()
     with tempfile.TemporaryDirectory() as folder:
-        recipe = _recipe(Path(folder), locks, per_lock, points)
-        with _serving(recipe) as port:
+        recipe = write_recipe(Path(folder), locks, per_lock, points)
+        with serving(recipe) as port:
             counts = asyncio.run(_drag(port, clock, steps))
-        with _serving(_cache(recipe, steps)) as port:
+        with serving(_cache(recipe, steps)) as port:
             counts |= asyncio.run(_play(port, clock, steps))
     params = {"locks": locks, "per_lock": per_lock, "points": points, "steps": steps}
     medians = {f"{stage}_wall_ms": sorted(clock.wall[stage])[steps // 2] for stage in ("rest", "frame")}
@@ -47,7 +47,7 @@ def run(locks: int = 1389, per_lock: int = 36, points: int = 60, steps: int = 12
 
 
 @contextmanager
-def _serving(file: Path) -> Iterator[int]:
+def serving(file: Path) -> Iterator[int]:
     """Serves the review of a file in a thread; yields the port."""
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
@@ -67,7 +67,7 @@ def _serving(file: Path) -> Iterator[int]:
         server.join()
 
 
-def _recipe(folder: Path, locks: int, per_lock: int, points: int) -> Path:
+def write_recipe(folder: Path, locks: int, per_lock: int, points: int) -> Path:
     """Writes the example's recipe with given numbers of locks and hairs."""
     shutil.copy(EXAMPLE / "head.usdc", folder)
     text = (EXAMPLE / "curls.recipe.toml").read_text()

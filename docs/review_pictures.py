@@ -4,7 +4,7 @@
     .venv/bin/python docs/review_pictures.py lock people  those of these names
     .venv/bin/python docs/review_pictures.py --states FOLDER   states of the page in five sizes, to be looked at
 
-``people`` is a review of two pages, as stills of both next to each other. Needs playwright and Chromium.
+``people`` is a movie of a review of two pages. Needs playwright and Chromium.
 """
 
 from __future__ import annotations
@@ -28,8 +28,22 @@ from review import CHROMIUM, FLAGS, PATIENCE, Review, Server
 
 DOCS = Path(__file__).parent
 IMAGES, EXAMPLE = DOCS / "images", DOCS.parent / "examples/child"
-DESKTOP, WIDE, TABLET, LYING, PHONE = (1280, 800), (1920, 1080), (820, 1180), (1180, 820), (390, 844)
-COUNTS = {r"count = 1050": "count = 620", r"per_lock = 36": "per_lock = 12"}  # a picture in software takes seconds
+SMALL, DESKTOP, WIDE, TABLET, LYING, PHONE = (
+    (1000, 640),
+    (1280, 800),
+    (1920, 1080),
+    (820, 1180),
+    (1180, 820),
+    (390, 844),
+)
+COUNTS = {r"per_lock = 36": "per_lock = 16"}  # a picture in software takes seconds
+FEW = {
+    r"count = 1050": "count = 300",
+    r"per_lock = \d+": "per_lock = 4",
+    r"frames = \[1, 30\]": "frames = [1, 4]",
+}  # where panels are looked at
+SOME = {r"count = 1050": "count = 620", r"per_lock = 36": "per_lock = 12"}  # in a movie
+TIMELESS = "[data-number=draw], [data-number=groom] { display: none }"  # times of a busy machine in software
 
 
 class Page(Review):
@@ -47,24 +61,31 @@ class Page(Review):
             mouse.move(*place, steps=5)
         mouse.up()
 
+    def seen(self) -> Image.Image:
+        """The page as it is, with as many hairs as it has drawn so far."""
+        self.settled()
+        self.laid_out()
+        return Image.open(io.BytesIO(self.page.screenshot(timeout=600_000))).convert("RGB")
+
     def taken(self) -> Image.Image:
         """The page once all of its hairs are in the picture."""
         self.settled()
-        self.until("ringlet.viewer.idle")
+        self.page.add_style_tag(content=TIMELESS)
+        self.laid_out()
         self.get("ringlet.viewer.drawNow()")  # as fine as the hairs allow, however slow the machine is
-        return Image.open(io.BytesIO(self.page.screenshot())).convert("RGB")
+        return Image.open(io.BytesIO(self.page.screenshot(timeout=600_000))).convert("RGB")
 
 
 @contextmanager
-def served(file: str) -> Iterator[Server]:
+def served(file: str, counts: dict[str, str] = COUNTS) -> Iterator[Server]:
     """Serves a file of a copy of the example with fewer hairs."""
     with tempfile.TemporaryDirectory() as folder:
         shutil.copytree(EXAMPLE, folder, dirs_exist_ok=True)
-        recipe = Path(folder, "curls.recipe.toml")
-        text = recipe.read_text()
-        for old, new in COUNTS.items():
-            text = re.sub(old, new, text)
-        recipe.write_text(text)
+        for path in Path(folder).glob("*.toml"):
+            text = path.read_text()
+            for old, new in counts.items():
+                text = re.sub(old, new, text)
+            path.write_text(text)
         server = Server(Path(folder, file))
         server.start()
         try:
@@ -85,7 +106,9 @@ def opened(browser: Browser, server: Server, size: tuple[int, int], theme: str, 
 def page_of(browser: Browser, file: str, size: tuple[int, int], theme: str, touch: bool = False) -> Iterator[Page]:
     """A page of a review of its own."""
     with served(file) as server:
-        yield opened(browser, server, size, theme, touch)
+        page = opened(browser, server, size, theme, touch)
+        yield page
+        page.page.context.close()  # it draws on otherwise
 
 
 def review(browser: Browser) -> Image.Image:
@@ -97,9 +120,10 @@ def review(browser: Browser) -> Image.Image:
 def lock(browser: Browser) -> Image.Image:
     with page_of(browser, "curls.recipe.toml", DESKTOP, "dark") as page:
         page.choose("curl")
-        page.get("ringlet.lock.choose(40)")
+        page.page.mouse.click(540, 220)  # hair over the forehead
+        page.until("ringlet.lock.rows.length == 1")
         page.press("Isolate")
-        page.until("ringlet.viewer.hair.a.locks.marked[40] == 1")
+        page.until("ringlet.viewer.hair.a.locks.marked[ringlet.lock.rows[0]] == 1")
         page.page.get_by_text("values of this lock alone").click()
         return page.taken()
 
@@ -107,7 +131,6 @@ def lock(browser: Browser) -> Image.Image:
 def sculpt(browser: Browser) -> Image.Image:
     with page_of(browser, "curls.recipe.toml", DESKTOP, "dark") as page:
         page.page.keyboard.press("b")
-        page.press("comb")
         page.stroke((640, 190), (690, 150), (760, 130))
         page.until("ringlet.model.documents.recipe.edits.includes('[[sculpt]]')")
         return page.taken()
@@ -131,90 +154,163 @@ def tablet(browser: Browser) -> Image.Image:
         return page.taken()
 
 
-def people(browser: Browser) -> Image.Image:
-    """A review of two pages, as stills: the one who leads on the left, the one who follows on the right."""
-    stills: list[Image.Image] = []
-    with served("curls.recipe.toml") as server:
-        one, two = (opened(browser, server, DESKTOP, "dark") for _ in range(2))
+class Movie:
+    """Two pages next to each other, as a movie of stills."""
 
-        def still() -> None:
-            both = Image.new("RGB", (1600, 500))
-            for k, page in enumerate((one, two)):
-                both.paste(page.taken().resize((800, 500), Image.Resampling.LANCZOS), (800 * k, 0))
-            stills.append(both)
+    def __init__(self, *pages: Page) -> None:
+        self.pages = pages
+        self.stills: list[Image.Image] = []
+        self.times: list[int] = []
 
+    def still(self, ms: int) -> None:
+        """Adds the pages as they are, for a time [ms]."""
+        both = Image.new("RGB", (1600, 512))
+        for k, page in enumerate(self.pages):
+            both.paste(page.taken().resize((800, 512), Image.Resampling.LANCZOS), (800 * k, 0))
+        self.stills.append(both)
+        self.times.append(ms)
+
+    def save(self, path: Path) -> None:
+        self.stills[0].save(path, save_all=True, append_images=self.stills[1:], duration=self.times, loop=0, quality=70)
+
+
+def people(browser: Browser) -> Movie:
+    """A review of two pages: who leads on the left, who follows on the right. A note, a snapshot, a wipe."""
+    with served("curls.recipe.toml", SOME) as server:
+        one, two = (opened(browser, server, SMALL, "dark") for _ in range(2))
+        movie = Movie(one, two)
         for page, name in ((one, "Ada"), (two, "Ben")):
             page.page.get_by_label("Your name for them").fill(name)
             page.press("Use this name")
         one.choose("guides")
-        one.get("(ringlet.viewer.orbit(-0.5, 0.05), ringlet.viewer.move())")
         two.until("ringlet.model.chosen.place[0] == 'guides'")
-        still()
-        change = "{ kind: 'set', file: 'recipe', changes: [[['guides', 'length', 'value'], 5.5]], gesture: 1 }"
-        one.get(f"ringlet.model.say({change})")
-        two.until("ringlet.model.value('recipe', ['guides', 'length', 'value']) == 5.5")
-        still()
+        movie.still(1500)
+        for _ in range(2):
+            one.get("(ringlet.viewer.orbit(-0.2, 0.02), ringlet.viewer.move())")
+            movie.still(500)
         two.page.keyboard.press("a")
-        two.page.get_by_label("Text of the note").fill("Longer over the ear")
+        two.page.get_by_label("Text of the note").fill("Shorter, to see the ear")
         two.press("Arrow")
-        two.stroke((880, 260), (800, 330))
+        two.stroke((660, 250), (600, 300))
+        movie.still(2000)
         two.press("Keep")
         one.until("ringlet.model.notes.length == 1")
         one.page.keyboard.press("t")
         one.page.get_by_role("tab", name="Notes").click()
         one.press("Show note 1")
-        still()
-    sheet = Image.new("RGB", (1600, 500 * len(stills)))
-    for k, both in enumerate(stills):
-        sheet.paste(both, (0, 500 * k))
-    return sheet
+        movie.still(2000)
+        one.page.keyboard.press("s")
+        one.until("ringlet.model.snapshots.length == 1 && ringlet.model.pictures.size == 1")
+        movie.still(1500)
+        shorter = "{ kind: 'set', file: 'recipe', changes: [[['guides', 'length', 'value'], 6]], gesture: 1 }"
+        one.get(f"ringlet.model.say({shorter})")
+        for page in movie.pages:
+            page.until("ringlet.model.value('recipe', ['guides', 'length', 'value']) == 6")
+        movie.still(1200)
+        one.page.get_by_role("button", name="Compare with ‘").click()
+        for page in movie.pages:
+            page.until("ringlet.viewer.compared && ringlet.viewer.hair.b.table")
+        one.page.keyboard.press("t")
+        one.page.get_by_label("Arrangement of the two looks").select_option("wipe")
+        line = one.page.get_by_label("Place of the wipe")
+        for presses in (0, 6):
+            for _ in range(presses):
+                line.press("ArrowRight")
+            movie.still(1500)
+        return movie
 
 
-PICTURES: dict[str, Callable[[Browser], Image.Image]] = {
+PICTURES: dict[str, Callable[[Browser], Image.Image | Movie]] = {
     made.__name__: made for made in (review, lock, sculpt, shot, tablet, people)
 }
 
-# What is pressed from one state of the page to the next: a stage, a key or a button.
-STATES = {
-    "start": "",
-    "curl": '[data-stage="curl"]',
-    "brush": "key b",
-    "tray": "key t",
-    "keys": "key ?",
-}
+SIZES = (DESKTOP, WIDE, TABLET, LYING, PHONE)
+STATES = ("start", "curl", "brush", "presets", "tray", "note", "keys")
+SHOT_STATES = ("shot", "swing", "wipe")
 
 
-def states(browser: Browser, folder: Path) -> None:
-    """Takes each state of the page in each size, in both themes."""
+def reach(page: Page, state: str) -> None:
+    """Brings the page from one state to another."""
+    keyboard = page.page.keyboard
+    match state:
+        case "curl":
+            page.get("document.querySelector('[data-stage=curl]').click()")
+            if page.page.locator(".sheets").is_visible():
+                page.press("Settings")
+        case "brush":
+            keyboard.press("b")
+        case "presets":
+            if page.page.locator(".sheets").is_visible():
+                page.press("Stages")
+            page.press("Looks and presets…")
+        case "tray":
+            keyboard.press("t")
+        case "note":
+            keyboard.press("t")
+            keyboard.press("a")
+        case "keys":
+            keyboard.press("?")
+        case "swing":
+            page.press("Swing and earlier runs")
+            page.get("ringlet.timeline.goTo(ringlet.model.timeline.frames[1])")
+            page.until("ringlet.timeline.settled")
+        case "wipe":
+            page.page.get_by_label("Compare with a run or cache").select_option("run 1")
+            page.until("ringlet.viewer.compared")
+            page.page.get_by_label("Arrangement of the two looks").select_option("wipe")
+
+
+def run_twice(page: Page) -> None:
+    """Runs the shot with two values of a setting."""
+    page.until("ringlet.model.timeline")
+    for _ in range(2):
+        key = page.get("ringlet.model.timeline.key")
+        page.page.get_by_role("button", name=re.compile("^Run( again)?$")).click()
+        page.until(f"ringlet.model.timeline.key != {key} && ringlet.model.timeline.state == 'done'", 600.0)
+        change = "{ kind: 'set', file: 'shot', changes: [[['strands', 'bend_scale'], 0.2]], gesture: 1 }"
+        page.get(f"ringlet.model.say({change})")
+        page.until("ringlet.model.settled")
+
+
+def states(browser: Browser, folder: Path, shot_alone: bool) -> None:
+    """Takes each state of the page in each size, with the themes in turn."""
     folder.mkdir(parents=True, exist_ok=True)
-    with served("curls.recipe.toml") as server:
-        for k, size in enumerate((DESKTOP, WIDE, TABLET, LYING, PHONE)):
-            page = opened(browser, server, size, ("dark", "light")[k % 2], touch=size in (TABLET, LYING, PHONE))
-            for state, action in STATES.items():
-                if action.startswith("key"):
-                    page.page.keyboard.press(action[4:])
-                elif action:
-                    page.get(f"document.querySelector('{action}').click()")
-                page.taken().save(folder / f"{state}_{size[0]}x{size[1]}.png")
-                page.page.keyboard.press("Escape")
-            page.page.context.close()
+    files = {"curls.recipe.toml": STATES, "hat.shot.toml": SHOT_STATES}
+    for file, names in list(files.items())[shot_alone:]:
+        with served(file, FEW) as server:
+            for k, size in enumerate(SIZES):
+                theme = ("dark", "light")[(k + (names is SHOT_STATES)) % 2]
+                page = opened(browser, server, size, theme, touch=size in (TABLET, LYING, PHONE))
+                if names is SHOT_STATES and not k:
+                    run_twice(page)
+                for state in names:
+                    reach(page, state)
+                    page.seen().save(folder / f"{state}_{size[0]}x{size[1]}.png")
+                    page.page.keyboard.press("Escape")
+                page.page.context.close()
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("names", nargs="*", help=f"of {', '.join(PICTURES)}; all by default")
     parser.add_argument("--states", type=Path, metavar="FOLDER", help="takes states of the page in five sizes")
+    parser.add_argument("--shot", action="store_true", help="with --states: those of a shot alone")
     options = parser.parse_args()
     if unknown := [name for name in options.names if name not in PICTURES]:
         parser.error(f"there is no picture '{unknown[0]}'; choose of {', '.join(PICTURES)}")
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
         if options.states:
-            states(browser, options.states)
+            states(browser, options.states, options.shot)
             return
         for name in options.names or PICTURES:
+            made = PICTURES[name](browser)
             file = IMAGES / ("review.jpg" if name == "review" else f"review_{name}.jpg")
-            PICTURES[name](browser).save(file, quality=85, optimize=True)
+            if isinstance(made, Movie):
+                file = file.with_suffix(".webp")
+                made.save(file)
+            else:
+                made.save(file, quality=85, optimize=True)
             print(file)
 
 

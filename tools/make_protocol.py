@@ -37,6 +37,7 @@ PARTS = (
     protocol.Person,
     protocol.Lamp,
     protocol.Rig,
+    protocol.Arranged,
     protocol.Shared,
     protocol.Snapshot,
     protocol.Note,

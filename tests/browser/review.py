@@ -109,15 +109,25 @@ class Review:
         self.get("ringlet.viewer.invalidate()")
         self.until(f"ringlet.viewer.pictures > {before}")
 
+    def laid_out(self) -> None:
+        """Waits until panels have their sizes, which the picture is composed for: the same in two frames in a row.
+
+        The browser reports a new size of a panel in the frame after the change.
+        """
+        self.page.evaluate(
+            "async () => { for (let now = '', before; now !== before; ) { before = now; "
+            "await new Promise(requestAnimationFrame); now = JSON.stringify(ringlet.viewer.clear); } }"
+        )
+
     def picture(self) -> np.ndarray:
         """Pixels of the canvas, shape (height, width, 3)."""
-        self.get("ringlet.viewer.drawNow()")
+        self.laid_out()
         return self.picture_of(self.page, "ringlet.viewer")
 
     def clear_picture(self) -> np.ndarray:
         """Pixels of what panels leave clear, which the picture is composed for, shape (height, width, 3)."""
-        clear = self.get("ringlet.viewer.clear")
-        return self.picture()[clear["y"] :, clear["x"] :][: clear["height"], : clear["width"]]
+        picture, clear = self.picture(), self.get("ringlet.viewer.clear")
+        return picture[clear["y"] :, clear["x"] :][: clear["height"], : clear["width"]]
 
     @staticmethod
     def picture_of(page: Any, viewer: str) -> np.ndarray:

@@ -229,6 +229,17 @@ SMALL = """() => [...document.querySelectorAll('button, input, select, summary')
     .map(([e]) => e.outerHTML.slice(0, 100))"""
 
 
+# What stands in the bar or in the row of a stage, and is not all in it or is on something else of it.
+SPILLED = """() => [...document.querySelectorAll('.bar, .stage')].flatMap((row) => {
+    const outer = row.getBoundingClientRect();
+    const seen = [...row.querySelectorAll('button, select')].filter((e) => e.checkVisibility());
+    const boxes = seen.map((e) => [e, e.getBoundingClientRect()]);
+    return boxes.filter(([e, box]) => box.top < outer.top - 1 || box.bottom > outer.bottom + 1
+        || boxes.some(([other, it]) => other !== e && it.left < box.right - 1 && it.right > box.left + 1
+            && it.top < box.bottom - 1 && it.bottom > box.top + 1))
+        .map(([e]) => e.outerHTML.slice(0, 100)); })"""
+
+
 @pytest.mark.parametrize("width, height", [(390, 844), (844, 390), (820, 1180), (1280, 800)])
 def test_panels_do_not_overlap_and_targets_are_large_enough(opened: Any, width: int, height: int):
     review: Review = opened(viewport={"width": width, "height": height}, has_touch=True, is_mobile=width != 1280)
@@ -237,7 +248,25 @@ def test_panels_do_not_overlap_and_targets_are_large_enough(opened: Any, width: 
             review.page.get_by_role("navigation", name="Panels").get_by_role("button", name=sheet).click()
         assert review.page.evaluate(OVERLAPS) == []
         assert review.page.evaluate(SMALL) == []
+        assert review.page.evaluate(SPILLED) == []
         assert review.get("document.documentElement.scrollWidth") <= width
+
+
+def test_one_thing_at_a_time_is_open_on_a_small_screen(opened: Any):
+    review: Review = opened(viewport={"width": 390, "height": 844}, has_touch=True, is_mobile=True)
+    page = review.page
+    panels = page.get_by_role("navigation", name="Panels")
+    panels.get_by_role("button", name="View").click()
+    page.get_by_role("button", name="Snapshots, notes and references (T)").click()
+    assert page.locator(".tray").is_visible() and not page.locator(".viewbar").is_visible()
+    panels.get_by_role("button", name="Stages").click()
+    assert page.locator(".stack").is_visible() and not page.locator(".tray").is_visible()
+    page.get_by_role("button", name="Looks and presets…").click()
+    page.keyboard.press("b")
+    assert page.locator(".brush.sculpt").is_visible() and not page.locator(".presets, .stack").first.is_visible()
+    page.keyboard.press("b")
+    assert page.locator(".stack").is_visible()
+    assert not review.errors
 
 
 def test_light_camera_and_bookmarks_are_remembered(opened: Any):

@@ -36,6 +36,7 @@ export function viewOf(hash: string): { name: string; view: View } | null {
       place: place.map((part) => (/^\d+$/.test(part) ? Number(part) : part)),
       locks: numbers(values.get("locks")).filter(Number.isSafeInteger),
       frame: Number.isFinite(frame) ? frame : null,
+      looks: null,
     },
   };
 }

@@ -68,13 +68,18 @@ class App {
     this.model.paint = (place, label) => this.paint.paint(place, label);
     this.draw = new DrawTool(this.model, this.viewer);
     this.model.draw = (place, label) => this.draw.draw(place, label);
+    const presets = new PresetTool(this.model, this.viewer);
+    const sheets = new Sheets(this.model);
     const tools = [this.brush, this.paint, this.draw];
     for (const tool of tools)
       tool.changed.push((on) => {
         if (!on) return;
         for (const other of tools) if (other !== tool) other.show(false);
         this.lock.choose(-1);
+        presets.show(false);
+        sheets.open("stages");
       });
+    presets.opened = () => tools.forEach((tool) => tool.show(false));
     this.lock.busy = () => tools.some(({ on }) => on);
     this.pointer = new PresenterPointer(this.model, this.viewer);
     picture.append(this.lock.handles, this.brush.ring, this.pointer.element);
@@ -90,7 +95,6 @@ class App {
     keys("+ and -", "zoom in, zoom out", "+", "=", "-");
     keys("F", "frame all hair", "f");
     const name = () => (this.model.welcome?.name ?? "ringlet").split(".")[0];
-    const presets = new PresetTool(this.model, this.viewer);
     const stack = new Stack(this.model, () => presets.show(true));
     const left = h("div", { class: "left" }, stack.element, presets.element, this.lock.element, this.brush.element, this.paint.element, this.draw.element);
     const settings = new Settings(this.model).element;
@@ -106,24 +110,26 @@ class App {
     const lens = new Lens(this.model, this.viewer, this.look, name);
     viewbar.element.append(lens.button, snapshots.button, this.tray.button);
     const bar = new Bar(this.model, () => this.setTheme(), people.element, () => this.endComparison()).element;
-    const sheets = new Sheets(this.model).element;
+    this.tray.opened = () => sheets.open("");
+    sheets.chosen = () => this.tray.show(false);
+    const compare = new CompareBar(this.model, this.viewer, () => this.endComparison());
     root.append(
       bar,
       left,
       settings,
       viewbar.element,
-      new CompareBar(this.model, this.viewer, () => this.endComparison()).element,
+      compare.element,
       this.tray.element,
       lens.element,
       this.timeline.element,
       this.status.element,
       this.notices.element,
       this.problems.element,
-      sheets,
+      sheets.element,
     );
-    const below = [viewbar.element, this.timeline.element, this.status.element, sheets];
+    const below = [viewbar.element, this.timeline.element, this.status.element, sheets.element];
     const panels = [...left.children, settings] as HTMLElement[];
-    new ClearArea([bar, this.problems.element], panels, below, (clear) => {
+    new ClearArea([bar, this.problems.element], [compare.bar], panels, below, (clear) => {
       this.viewer.setClear(clear);
       this.model.tell("clear");
     });

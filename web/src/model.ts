@@ -41,6 +41,7 @@ type Topic =
   | "measured"
   | "timeline"
   | "compared"
+  | "arranged"
   | "chosen"
   | "problems"
   | "progress"

@@ -1,6 +1,6 @@
 // Made by tools/make_protocol.py from python/ringlet/viewer/protocol; change it there.
 
-export const VERSION = 10;
+export const VERSION = 11;
 export type Json = string | number | boolean | null | Json[] | { [key: string]: Json };
 
 /** A stage of the groom. place: path of its settings in the recipe. */
@@ -79,6 +79,14 @@ export interface Rig {
   lamps: Lamp[];
 }
 
+/** How the looks that are compared are arranged. */
+export interface Arranged {
+  arrangement: "split" | "wipe" | "flip" | "difference";
+  order: ("a" | "b" | "c" | "d")[];
+  front: "a" | "b" | "c" | "d";
+  wipe: number;
+}
+
 /** How the leading page looks at the groom. */
 export interface Shared {
   camera: number[];
@@ -91,6 +99,7 @@ export interface Shared {
   place: (string | number)[];
   locks: number[];
   frame: number | null;
+  looks: Arranged | null;
 }
 
 /** A snapshot. time: when it was taken, in ISO 8601. */
@@ -388,6 +397,7 @@ export interface Look {
   place: (string | number)[];
   locks: number[];
   frame?: number | null;
+  looks?: Arranged | null;
 }
 
 /** Requests a share page: one file with the look to turn. */
@@ -791,6 +801,7 @@ export interface Followed {
   place: (string | number)[];
   locks: number[];
   frame: number | null;
+  looks: Arranged | null;
 }
 
 /** Position of the leading page's pointer in the scene [m]; None where it is elsewhere. */

@@ -20,8 +20,8 @@ def bench(
         str,
         typer.Argument(
             metavar="NAME",
-            help="What to measure: clean, cloth, direct, groom, growth, head, iterations, liveliness, mixed, rest, "
-            "slider, strands, twirl, view, warp …",
+            help="What to measure: clean, cloth, direct, groom, growth, head, iterations, liveliness, mixed, page, "
+            "rest, slider, strands, twirl, view, warp …",
         ),
     ],
     as_json: Json = False,

@@ -39,9 +39,11 @@ export class Bar {
       this.other,
       h("span", { class: "space" }),
       people,
-      iconButton("keys", "Keys (?)", showKeys),
+      iconButton("keys", "Keys (?)", showKeys, { class: "icon-button keys-list" }),
       iconButton("sun", "Dark or light", setTheme),
     );
+    const tellHeight = () => document.documentElement.style.setProperty("--bar", `${this.element.offsetHeight}px`);
+    new ResizeObserver(tellHeight).observe(this.element);
     for (const topic of ["document", "role", "welcome", "files", "compared", "snapshots"] as const) model.on(topic, () => this.update());
     bindKey({ keys: "Ctrl+Z", does: "undo", on: command("z"), run: () => model.say({ kind: "undo" }) });
     const redo = (event: KeyboardEvent) => command("z", true)(event) || command("y")(event);

@@ -4,48 +4,66 @@
 import type { Box } from "../view/box";
 import { fits } from "../view/looks";
 
+const SMALL = 900; // width of a window in which what floats over the picture would cover the subject [pixels]
 const GAP = 14; // between a panel and what is next to it [pixels]
 
 export class ClearArea {
   private box = "";
 
-  /** above, below: bars at the edges; sides: panels in columns on the left and on the right */
+  /** above, below: bars at the edges; over: bars at the top of the picture; sides: panels in columns on both sides */
   constructor(
     private readonly above: HTMLElement[],
+    private readonly over: HTMLElement[],
     private readonly sides: HTMLElement[],
     private readonly below: HTMLElement[],
     private readonly changed: (clear: Box) => void,
   ) {
     const observer = new ResizeObserver(() => this.measure());
-    for (const element of [document.documentElement, ...above, ...sides, ...below]) observer.observe(element);
+    for (const element of [document.documentElement, ...above, ...over, ...sides, ...below]) observer.observe(element);
   }
 
-  /** The largest of two rectangles: between the columns, and below them. */
+  /** The largest rectangle that is between the columns, or below one of them or both. */
   private measure(): void {
     const { innerWidth, innerHeight } = window;
     const top = Math.max(0, ...this.above.flatMap(seen).map(({ bottom }) => bottom));
     let bottom = Math.min(innerHeight, ...this.below.flatMap(seen).map(({ top }) => top - GAP / 2));
     const edge = innerHeight - bottom + GAP / 2;
-    let [left, right, under] = [0, innerWidth, top];
+    let [left, right] = [0, innerWidth];
+    let [underLeft, underRight] = [top, top];
     for (const box of this.sides.flatMap(seen)) {
       if (box.width > 0.5 * innerWidth) bottom = Math.min(bottom, box.top - GAP / 2);
-      else if (box.left + box.right < innerWidth) left = Math.max(left, box.right + GAP);
-      else right = Math.min(right, box.left - GAP);
-      under = Math.max(under, box.bottom + GAP / 2);
+      else if (box.left + box.right < innerWidth) {
+        left = Math.max(left, box.right + GAP);
+        underLeft = Math.max(underLeft, box.bottom + GAP / 2);
+      } else {
+        right = Math.min(right, box.left - GAP);
+        underRight = Math.max(underRight, box.bottom + GAP / 2);
+      }
     }
-    const whole = (x: number, y: number, width: number, height: number): Box => ({
+    const between = (x: number, y: number, end: number): Box => ({
       x: Math.round(x),
       y: Math.round(y),
-      width: Math.max(Math.round(width), 1),
-      height: Math.max(Math.round(height), 1),
+      width: Math.max(Math.round(end - x), 1),
+      height: Math.max(Math.round(bottom - y), 1),
     });
-    const between = whole(left, top, right - left, bottom - top);
-    const beneath = whole(0, under, innerWidth, bottom - under);
-    const clear = fits(beneath) > fits(between) ? beneath : between;
+    const places = [
+      between(left, top, right),
+      between(left, underRight, innerWidth),
+      between(0, underLeft, right),
+      between(0, Math.max(underLeft, underRight), innerWidth),
+    ];
+    const clear = places.reduce((best, one) => (fits(one) > fits(best) ? one : best));
+    const begin = clear.y;
+    if (innerWidth <= SMALL)
+      for (const { height } of this.over.flatMap(seen)) {
+        clear.y += Math.round(height + GAP);
+        clear.height = Math.max(clear.height - Math.round(height + GAP), 1);
+      }
     const { style } = document.documentElement;
     style.setProperty("--below", `${edge}px`);
     style.setProperty("--left", `${clear.x}px`);
     style.setProperty("--right", `${innerWidth - clear.x - clear.width}px`);
+    style.setProperty("--over", `${begin}px`);
     style.setProperty("--top", `${clear.y}px`);
     style.setProperty("--bottom", `${innerHeight - clear.y - clear.height}px`);
     const now = JSON.stringify(clear);

@@ -52,7 +52,7 @@ export class CompareBar {
   private readonly changes = h("button", { type: "button", class: "quiet", "aria-expanded": "false" }, "Changes");
   private readonly list = h("div", { class: "compare-changes scrolls", hidden: true, tabindex: 0, role: "region", "aria-label": "Settings that differ" });
   private readonly legend = h("p", { class: "compare-legend", hidden: true }, LEGEND);
-  private readonly bar: HTMLElement;
+  readonly bar: HTMLElement;
   private readonly labels = h("div", { class: "look-labels" });
   private readonly line = new WipeLine("Place of the wipe", (at) => this.wipe(at));
   private readonly stretch = h("div", { class: "compare-wipe" }, this.line.element);
@@ -84,7 +84,7 @@ export class CompareBar {
     );
     this.element.append(this.stretch, this.labels, this.bar, this.legend, this.list);
     for (const topic of ["compared", "snapshots", "files", "role"] as const) model.on(topic, () => this.update());
-    model.on("clear", () => this.update());
+    for (const topic of ["clear", "arranged"] as const) model.on(topic, () => this.update());
     bindKey({ keys: "Tab", does: "flip between the looks that are compared", on: (event) => this.flips(event), run: () => this.flip() });
   }
 
@@ -127,6 +127,7 @@ export class CompareBar {
   private redraw(): void {
     this.viewer.invalidate();
     this.update();
+    this.model.tell("look"); // followers see the same arrangement
   }
 
   private update(): void {

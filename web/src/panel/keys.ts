@@ -68,8 +68,10 @@ export const plainKey =
     !event.ctrlKey && !event.metaKey && keys.includes(event.key.length === 1 ? event.key.toLowerCase() : event.key);
 
 export function showKeys(): void {
-  const row = (keys: string, does: string) => h("tr", {}, h("th", { scope: "row" }, keys), h("td", {}, does));
-  const rows = [...bound.map(({ keys, does }) => row(keys, does)), ...OWN.map(([keys, does]) => row(keys, does))];
+  const uses = new Map<string, Set<string>>(); // tools share keys: one row lists them
+  for (const [keys, does] of [...bound.map(({ keys, does }) => [keys, does]), ...OWN])
+    uses.set(keys, (uses.get(keys) ?? new Set()).add(does));
+  const rows = [...uses].map(([keys, does]) => h("tr", {}, h("th", { scope: "row" }, keys), h("td", {}, [...does].join("; "))));
   openDialog("Keys", h("div", { class: "scrolls", tabindex: 0, role: "region", "aria-label": "List of keys" }, h("table", { class: "keys" }, h("tbody", {}, ...rows))));
 }
 

@@ -50,7 +50,8 @@ export class Look {
       this.restore();
       this.follow(); // locks that are chosen may be there now
     });
-    model.on("followed", () => this.follow());
+    for (const topic of ["followed", "compared"] as const) model.on(topic, () => this.follow());
+    model.on("compared", () => this.changed());
     addEventListener("pagehide", () => this.store());
     const digit = (event: KeyboardEvent) => /^Digit[1-9]$/.test(event.code) && !event.ctrlKey && !event.metaKey;
     bindKey({
@@ -77,6 +78,7 @@ export class Look {
       place: chosen.place,
       locks: this.lock.ids,
       frame: this.timeline.current,
+      looks: this.viewer.looks.arranged,
     };
   }
 
@@ -90,6 +92,10 @@ export class Look {
       this.model.choose(state.file, state.place);
       if (state.frame !== null) this.timeline.goTo(state.frame);
       this.lock.chooseIds(state.locks);
+      if (state.looks) {
+        this.viewer.looks.arrangeAs(state.looks);
+        this.model.tell("arranged");
+      }
     }
     this.applying = false;
   }
@@ -212,7 +218,7 @@ function lightOf({ light, light_turn, color, focal_length }: View): string {
 
 /** Whether two views show the same. */
 function same(a: View, b: View): boolean {
-  const rest = ({ focal_length, light_turn, light, color, overlay, file, place, locks, frame }: View) =>
-    JSON.stringify([focal_length, light_turn, light, color, overlay, file, place, locks, frame]);
+  const rest = ({ focal_length, light_turn, light, color, overlay, file, place, locks, frame, looks }: View) =>
+    JSON.stringify([focal_length, light_turn, light, color, overlay, file, place, locks, frame, looks]);
   return rest(a) === rest(b) && a.camera.every((value, k) => Math.abs(value - b.camera[k]) < SAME);
 }

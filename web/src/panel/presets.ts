@@ -13,6 +13,8 @@ const PICTURE = [160, 178] as const; // of a preset that is kept [pixels]
 const TABLES = ["guides", "locks", "shape", "curl", "hairs", "color", "fiber", "nail", "clean"];
 
 export class PresetTool {
+  /** Whom to tell that it is opened. */
+  opened = (): void => {};
   readonly element = h("section", { class: "panel presets", hidden: true, "aria-label": "Looks and presets" });
   private readonly cards = h("div", { class: "preset-groups" });
   private readonly mixing = h("div", { class: "field mixing", hidden: true });
@@ -49,6 +51,7 @@ export class PresetTool {
 
   /** Opens the panel, or closes it. */
   show(on: boolean): void {
+    if (on) this.opened();
     this.element.toggleAttribute("hidden", !on);
     if (on) this.model.say({ kind: "list_presets" });
     else this.leave(0);

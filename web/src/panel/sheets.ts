@@ -7,12 +7,14 @@ const SHEETS = { "": "Picture", stages: "Stages", settings: "Settings", view: "V
 type Sheet = keyof typeof SHEETS;
 
 export class Sheets {
+  /** Whom to tell that a button opens a panel over the picture. */
+  chosen = (): void => {};
   readonly element = h("nav", { class: "sheets", "aria-label": "Panels" });
   private readonly buttons: Record<string, HTMLElement> = {};
 
   constructor(model: Model) {
     for (const [name, label] of Object.entries(SHEETS)) {
-      this.buttons[name] = h("button", { type: "button", class: "quiet", onclick: () => this.open(name as Sheet) }, label);
+      this.buttons[name] = h("button", { type: "button", class: "quiet", onclick: () => (this.open(name as Sheet), this.chosen()) }, label);
       this.element.append(this.buttons[name]);
     }
     this.open("");
@@ -24,7 +26,7 @@ export class Sheets {
     });
   }
 
-  private open(sheet: Sheet): void {
+  open(sheet: Sheet): void {
     document.documentElement.dataset["sheet"] = sheet;
     for (const [name, button] of Object.entries(this.buttons)) button.setAttribute("aria-pressed", String(name === sheet));
   }

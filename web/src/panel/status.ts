@@ -30,7 +30,7 @@ export class Status {
   }
 
   drew({ drawMs, shown }: DrawStatistics): void {
-    this.set("draw", `${drawMs.toFixed(0)} ms`);
+    if (drawMs !== undefined) this.set("draw", `${drawMs.toFixed(0)} ms`);
     const hairs = this.model.numbers?.hairs ?? 0;
     if (hairs) this.set("hairs", shown < hairs ? `${count(shown)} of ${count(hairs)}` : count(hairs));
   }

@@ -34,7 +34,8 @@ export class SwingChart {
   private readonly chart = document.createElementNS(NS, "svg");
   private readonly scale = h("span", { class: "swing-scale" });
   private readonly legend = h("div", { class: "swing-legend" });
-  private readonly plot = h("div", { class: "swing-plot" }, this.chart, this.scale);
+  private readonly nothing = h("p", {});
+  private readonly plot = h("div", { class: "swing-plot" }, this.chart, this.scale, this.nothing);
   private readonly use = h("button", { type: "button", class: "quiet", hidden: true }, "Use its settings");
 
   /** goTo: shows a frame */
@@ -80,9 +81,11 @@ export class SwingChart {
     this.use.hidden = !compared;
     this.use.disabled = !role.leads;
     const nothing = absence(timeline);
-    this.plot.hidden = nothing !== "";
+    this.nothing.textContent = nothing;
+    this.chart.toggleAttribute("hidden", nothing !== "");
     if (nothing) {
-      this.legend.replaceChildren(h("span", {}, nothing));
+      this.scale.textContent = "";
+      this.legend.replaceChildren();
       return;
     }
     const tips = { frames: timeline.frames, swings: timeline.swings, number: 0 };

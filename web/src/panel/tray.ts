@@ -17,6 +17,8 @@ export interface TrayTab {
 export class Tray {
   readonly element = h("section", { class: "tray", hidden: true, "aria-label": "Snapshots, notes and references" });
   readonly button = iconButton("tray", "Snapshots, notes and references (T)", () => this.show(this.element.hidden === true));
+  /** Whom to tell that it is opened. */
+  opened = (): void => {};
   private readonly tabs: { tab: TrayTab; button: HTMLElement }[] = [];
   private readonly list = h("div", { class: "group", role: "tablist", "aria-label": "Tray" });
   private readonly actions = h("div", { class: "group tray-actions" });
@@ -48,6 +50,7 @@ export class Tray {
     this.element.hidden = !on;
     this.button.setAttribute("aria-pressed", String(on));
     document.documentElement.classList.toggle("with-tray", on);
+    if (on) this.opened();
     this.update();
   }
 

@@ -1,12 +1,12 @@
 // Which looks are in the picture, and where: one alone, up to four next to one another, or two in one place.
 
-import type { Hairs } from "../protocol";
+import type { Arranged, Hairs } from "../protocol";
 import type { Box, Size } from "./box";
 
 /** A look in the picture: that of the open recipe is on side a. */
 export type Side = Hairs["side"];
 
-export type Arrangement = "split" | "wipe" | "flip" | "difference";
+export type Arrangement = Arranged["arrangement"];
 
 const SUBJECT = 0.8; // width of a subject, as a fraction of the height of the picture that frames it
 const WORTH = 1.2; // factor by which looks are larger where one more row is worth it
@@ -45,6 +45,20 @@ export class Looks {
 
   get difference(): boolean {
     return this.several && this.arrangement === "difference";
+  }
+
+  /** The arrangement of several looks, to be shared. */
+  get arranged(): Arranged | null {
+    const { arrangement, order, front, wipe } = this;
+    return this.several ? { arrangement, order: [...order], front, wipe } : null;
+  }
+
+  /** Arranges the looks that are here as another page does. */
+  arrangeAs({ arrangement, order, front, wipe }: Arranged): void {
+    this.arrangement = arrangement;
+    this.wipe = wipe;
+    this.order.sort((a, b) => order.indexOf(a) - order.indexOf(b));
+    if (this.order.includes(front)) this.front = front;
   }
 
   add(side: Side): void {

@@ -20,7 +20,8 @@ const VIEW: [number, number] = [34, 7]; // azimuth and elevation of the first vi
 export type CameraState = Pick<Shared, "camera" | "focal_length" | "light_turn">;
 
 export interface DrawStatistics {
-  drawMs: number;
+  /** Time of the picture [ms], where it was measured. */
+  drawMs?: number;
   shown: number;
 }
 
@@ -237,6 +238,7 @@ export class Viewer {
     this.film.drawings = 0;
     painter.paint(view, { fraction: pace.resolved, drawings: pace.needed(pace.resolved) }, false);
     this.lacking = 0;
+    this.onDraw({ shown: this.hair.a.count });
   }
 
   /** Draws at a size, for a picture that is kept; then as before. A clear one has no backdrop. */

@@ -55,6 +55,7 @@ from ringlet.viewer.protocol.groom import (
 from ringlet.viewer.protocol.lights import Lamp, Rig
 from ringlet.viewer.protocol.message import (
     VERSION,
+    Arranged,
     File,
     Message,
     Place,
@@ -170,6 +171,7 @@ __all__ = [
     "Against",
     "AnyReview",
     "Arrange",
+    "Arranged",
     "Body",
     "Cameras",
     "Cancel",

@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from ringlet.data import limits
 
-VERSION = 10
+VERSION = 11
 
 Place = list[str | int]  # path of a setting in its file: ["shape", 0, "amount"]
 File = Literal["recipe", "shot"]
@@ -29,6 +29,20 @@ class Message(BaseModel):
     arrays: ClassVar[dict[str, str]] = {}
 
 
+class Arranged(Message):
+    """How the looks that are compared are arranged.
+
+    order: sides of the looks, the first on the left
+    front: the one that is seen where they are flipped
+    wipe:  where the wipe is, as a fraction of the width that panels leave clear
+    """
+
+    arrangement: Literal["split", "wipe", "flip", "difference"]
+    order: list[Side] = Field(min_length=1, max_length=4)
+    front: Side
+    wipe: float = Field(ge=0.0, le=1.0)
+
+
 class Shared(Message):
     """How the leading page looks at the groom.
 
@@ -39,6 +53,7 @@ class Shared(Message):
     file, place: the stage whose settings are shown
     locks:  ids of the chosen locks
     frame:  the frame that is seen; None without a timeline
+    looks:  arrangement of the looks that are compared; None for one look
     """
 
     camera: list[Coordinate] = Field(min_length=6, max_length=6)
@@ -51,3 +66,4 @@ class Shared(Message):
     place: Place = Field(max_length=8)
     locks: list[Id] = Field(max_length=10_000)
     frame: FrameNumber | None = None
+    looks: Arranged | None = None
