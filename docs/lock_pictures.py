@@ -32,7 +32,7 @@ def bundles(recipe: Recipe, numbers: tuple[int, ...]) -> list[list[NDArray[np.fl
     assert recipe.curl is not None
     upright = {
         "seed": 5,
-        "guides": Grown(count=40, length=Varied(value=0.12), lift=Varied(value=1.0), droop=Varied(value=0.0)),
+        "guides": Grown(count=40, length=Varied(value=0.12), lift=Varied(value=1.0), gravity_bend=Varied(value=0.0)),
         "locks": Locks(count=40, points=500),
         "shape": [],
         "scalp": recipe.scalp.model_copy(update={"region": None}),

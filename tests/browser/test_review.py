@@ -261,7 +261,7 @@ def test_a_value_of_several_locks_is_set_and_reverted_in_one_step(opened: Any):
 
 def test_regions_and_overlays_are_chosen_from_lists(opened: Any, folder: Path):
     recipe = folder / "small.recipe.toml"
-    recipe.write_text(recipe.read_text() + '[[nail]]\nreach = "2 cm"\n[[shape]]\nop = "scraggle"\n')
+    recipe.write_text(recipe.read_text() + '[[pin]]\nlength = "2 cm"\n[[shape]]\nop = "scraggle"\n')
     review: Review = opened()
     review.choose("shape/0")
     review.show_all_settings()
@@ -272,8 +272,8 @@ def test_regions_and_overlays_are_chosen_from_lists(opened: Any, folder: Path):
     review.until("ringlet.model.documents.recipe.said.shape[0].mask?.region === 'scalp'")
     review.settled()
     plain = review.clear_picture()
-    review.until("ringlet.model.measured?.nail.length")
-    review.page.get_by_label("Overlay").select_option("nail")
+    review.until("ringlet.model.measured?.pin.length")
+    review.page.get_by_label("Overlay").select_option("pin")
     assert review.page.get_by_role("note").inner_text().split() == ["free", "held"]
     assert different(review.clear_picture(), plain) > 0.002  # few hairs cover few pixels
     assert not review.errors

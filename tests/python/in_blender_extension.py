@@ -18,7 +18,7 @@ import numpy as np
 
 MODULE = "bl_ext.user_default.ringlet_groom"
 LOOK = """
-ringlet = 1
+ringlet = 2
 seed = 3
 
 [guides] # a cap of curls

@@ -13,7 +13,7 @@ from ringlet import UserError
 from ringlet.groom import parse_recipe
 
 RECIPE = """
-ringlet = 1
+ringlet = 2
 name = "edited"
 edits = "a.edits.toml"
 [scalp]
@@ -25,7 +25,7 @@ length = 6
 [locks]
 count = 12
 points = 64
-[clean]
+[collide]
 margin = 0
 [[shape]]
 op = "scraggle"
@@ -192,8 +192,8 @@ def test_a_moved_point_moves_its_neighbourhood_and_keeps_the_rest(recipe):
     before = locks(recipe)
     change(
         recipe,
-        "[clean]",
-        f"[[edit]]\nlock = {before.ids[4]}\nmove = [{{ at = 0.5, by = [1, 0, 0], reach = 0.25 }}]\n[clean]",
+        "[collide]",
+        f"[[edit]]\nlock = {before.ids[4]}\nmove = [{{ at = 0.5, by = [1, 0, 0], reach = 0.25 }}]\n[collide]",
     )
     moved = np.linalg.norm(locks(recipe)[4] - before[4], axis=1)
     u = np.linspace(0, 1, 64)

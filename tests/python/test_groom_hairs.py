@@ -11,7 +11,7 @@ from ringlet import Curves, UserError
 from ringlet.groom import HairMemory, make_groom, make_hairs, parse_recipe
 
 RECIPE = """
-ringlet = 1
+ringlet = 2
 [scalp]
 region = "scalp"
 [guides]
@@ -177,7 +177,7 @@ def two_locks(lean, blend):
         for x, a in zip((-0.004, 0.004), angle, strict=True)
     ]
     text = f"""
-ringlet = 1
+ringlet = 2
 [guides]
 file = "g.usda"
 [locks]
@@ -248,7 +248,7 @@ def test_textures_of_hairs_are_stored_with_the_groom(tmp_path):
     write_head(tmp_path / "head.usdc")
     Image.fromarray(np.array([[255], [64]], np.uint8).repeat(2, axis=1)).save(tmp_path / "thick.png")
     (tmp_path / "a.recipe.toml").write_text(
-        "ringlet = 1\n[scalp]\nfile = 'head.usdc'\nregion = 'scalp'\n[maps]\n1-thick = 'thick.png'\n"
+        "ringlet = 2\n[scalp]\nfile = 'head.usdc'\nregion = 'scalp'\n[maps]\n1-thick = 'thick.png'\n"
         "[guides]\ncount = 10\n[locks]\ncount = 10\n"
         "[hairs]\nper_lock = 2\nwidth = { value = '0.1 mm', map = '1-thick' }\n"
     )

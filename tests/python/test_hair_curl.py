@@ -8,13 +8,13 @@ from ringlet import UserError
 from ringlet.groom import HairMemory, make_groom, make_hairs, parse_recipe
 
 RECIPE = """
-ringlet = 1
+ringlet = 2
 [scalp]
 [guides]
 count = 6
 length = 12
 lift = 1
-droop = 0
+gravity_bend = 0
 [locks]
 count = 6
 points = 240

@@ -10,7 +10,7 @@ from ringlet import Curves, UserError, measure_hairs, write_groom, write_hairs
 from ringlet.groom import cover, hair_count, hair_cover, hairs_per_cm2, make_groom, make_hairs, parse_recipe
 
 DENSE = """
-ringlet = 1
+ringlet = 2
 [scalp]
 region = "scalp"
 [guides]
@@ -102,7 +102,7 @@ def test_hairs_that_hang_before_the_scalp_hide_the_part_that_their_optical_depth
 def test_a_density_counts_the_share_of_a_section_for_every_strand(pattern):
     shape = "[[shape]]\nop = 'cornrow'\n" if pattern == "rows" else "[[shape]]\nop = 'braid'\nwidth = 0.8\n"
     recipe = (
-        "ringlet = 1\n[scalp]\nregion = 'scalp'\n[guides]\ncount = 30\nlength = 12\n[locks]\npoints = 200\n"
+        "ringlet = 2\n[scalp]\nregion = 'scalp'\n[guides]\ncount = 30\nlength = 12\n[locks]\npoints = 200\n"
         f"[locks.sections]\npattern = '{pattern}'\nsize = 3\ngap = 0.3\nstrands = 3\n{shape}[hairs]\ndensity = 40\n"
     )
     made = make_groom(parse_recipe(recipe), ball())

@@ -36,7 +36,7 @@ def extended(folder: Path) -> Path:
     """A recipe that extends one with three operators."""
     base = folder / "small.recipe.toml"
     base.write_text(base.read_text() + SHAPES)
-    (folder / "more.recipe.toml").write_text('ringlet = 1\nextends = "small.recipe.toml"\n[curl]\nwidth = 1.3\n')
+    (folder / "more.recipe.toml").write_text('ringlet = 2\nextends = "small.recipe.toml"\n[curl]\nwidth = 1.3\n')
     return folder
 
 

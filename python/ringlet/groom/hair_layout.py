@@ -257,7 +257,7 @@ def _cross_section(per_lock: Values, lock: NDArray, disk: NDArray) -> NDArray[np
 def _neighbours(
     settings: HairSettings, per_lock: Values, curves: Curves, hairs: Placed, roots: NDArray, u: NDArray
 ) -> dict[str, NDArray]:
-    """Neighbouring lock that each hair blends with, and the blend weight: one half midway, 0 across a parting."""
+    """Neighbouring lock that each hair blends with, and the blend weight: one half midway, 0 across a part line."""
     blend = settings.blend.along(u).astype(np.float32)
     locks, scalp, lock, amount = per_lock.locks, per_lock.scalp, hairs.lock, per_lock("blend")
     if not amount.any() or len(locks) < 2:

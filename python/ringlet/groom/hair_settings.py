@@ -81,7 +81,7 @@ class HairSettings(Section):
         description="how far hairs between two locks mix both: 0 each follows its own; mixed curls get narrower",
     )
     apart: Annotated[float, Quantity("deg", 1.0, 180.0)] = Field(
-        default=60.0, description="locks that lean further apart than this, as across a parting, are not mixed"
+        default=60.0, description="locks that lean further apart than this, as across a part line, are not mixed"
     )
     families: Families | None = Field(default=None, description="sub-clumps of each lock; none when absent")
     curl: HairCurl | None = Field(

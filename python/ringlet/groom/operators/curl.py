@@ -84,7 +84,7 @@ class Curl(Operator):
     phase_spread: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
         default=Varied(value=1.0), description="0: all start alike, 1: anywhere"
     )
-    phase_alike: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
+    phase_coherence: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
         default=Varied(value=0.0), description="how much of that spread neighbours share: 0 nothing, 1 all"
     )
     phase_size: Annotated[float, Quantity("m", 1e-3, 1.0)] = Field(
@@ -233,7 +233,7 @@ class Curl(Operator):
     def _phase(self, curves: Curves, context: Context) -> NDArray[np.float64]:
         """Initial phase of each curl [degrees], shape (count,): random per lock plus a field that neighbours share."""
         spread, shared_fraction, phase = (
-            context.values(self, name, curves) for name in ("phase_spread", "phase_alike", "phase")
+            context.values(self, name, curves) for name in ("phase_spread", "phase_coherence", "phase")
         )
         own = context.random("phase").uniform(curves.ids)
         shared = context.random("phase_field").field(curves.roots, self.phase_size)

@@ -30,7 +30,7 @@ class Edges(Shape):
     ``direction`` from the way out of the scalp, away from the middle of the face, and turns on by
     ``swoop · ramp(u) + wave sin(2πs / wavelength)``. Locks of a swoop come together towards its tip.
 
-    Locks lie between the skin and ``height``, are not curled or moved off the skin, and are nailed in a shot. Put it
+    Locks lie between the skin and ``height``, are not curled or moved off the skin, and are pinned in a shot. Put it
     after the operators that move locks.
     """
 

@@ -19,7 +19,7 @@ from ringlet.groom.coil import Coil, on_scalp
 from ringlet.groom.operators.operator import UP, Context, arc_lengths, at_lengths, grid, unit, with_lock_points
 from ringlet.groom.operators.shape import Shape
 from ringlet.groom.operators.tied import TO_TIE
-from ringlet.groom.parting import Direction
+from ringlet.groom.part_line import Direction
 from ringlet.groom.worn import Worn, revolved, ring
 
 PATH_POINTS = 24  # of the path over the head, and of that after the tie
@@ -39,7 +39,7 @@ class Tie(Shape):
     the skin and raised by up to ``rise`` midway. Each lock has a place of its own in the tie.
     """
 
-    op: Literal["tie", "gather"] = "tie"
+    op: Literal["tie"] = "tie"
     curve: str | None = Field(
         default=None,
         description="name of helper curves that begin at ties, from `[curves]`: the centre lines of tails. Locks go to "
@@ -84,14 +84,6 @@ class Tie(Shape):
 
     turns: ClassVar[bool] = True
     starter: ClassVar[Mapping[str, Any]] = {"toward": [0, 1, -0.35]}
-
-    @model_validator(mode="before")
-    @classmethod
-    def _former_name(cls, data: Any) -> Any:
-        """Reads the settings of ``gather``, the former name of a tail along a curve."""
-        if isinstance(data, dict) and data.get("op") == "gather" and "tie" in data:
-            return {**{key: value for key, value in data.items() if key != "tie"}, "curve": data["tie"]}
-        return data
 
     @model_validator(mode="after")
     def _one_place(self) -> Tie:
