@@ -24,7 +24,7 @@ mesh = "/child/skin"
 region = "scalp"
 [guides]
 count = 110
-length = {{ value = 8.4, vary = 0.08, noise = 0.13, noise_size = 4 }}
+length = {{ value = 8.4, vary = 0.08, noise = 0.13, noise_wavelength = 4 }}
 lift = {{ value = 0.86, noise = 0.12 }}
 gravity_bend = 0.48
 zone = [{{ toward = [0, 0.4, 1], spread = 50, length = 0.5, lift = 0.85, gravity_bend = 1.6 }}]
@@ -33,8 +33,8 @@ count = {locks}
 points = {points}
 [[shape]]
 op = "scraggle"
-amount = 0.5
-size = 3
+magnitude = 0.5
+wavelength = 3
 [curl]
 width = 1.12
 curls = {{ value = 6, vary = 0.1 }}

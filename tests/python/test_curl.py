@@ -146,7 +146,7 @@ curls = 3
 start = 0
 right_handed = 1
 phase_coherence = {coherence}
-phase_size = 4
+phase_wavelength = 4
 """
     groom = make_groom(parse_recipe(recipe), ball())
     roots, points = groom.guides.roots, groom.locks.points.reshape(400, 60, 3)

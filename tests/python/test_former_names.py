@@ -34,6 +34,7 @@ def project(tmp_path) -> Path:
 ROOT = Path(__file__).parents[2]
 LOCKS = "[guides]\ncount = 12\nlength = 6\n[locks]\ncount = 40\npoints = 24\nshape_points = 12\n"
 ROWS = LOCKS.replace("points = 24", "points = 400") + "sections = { pattern = 'rows', size = 4, strands = 3 }\n"
+NOISES = ("frizz", "noise", "scraggle")
 LINE = "[curves.line]\npoints = [[1, 9, -6], [1, 9, 6]]\n"
 
 # Recipes in which NAME stands for the former or the present name of a setting, by the place of the former one.
@@ -58,6 +59,13 @@ RECIPES = {
     "shape.part.part_line.line": LINE + LOCKS + "[[shape]]\nop = 'part'\npart_line = { NAME = 'line' }\n",
     "shape.part.part_line.reach": LOCKS + "[[shape]]\nop = 'part'\npart_line = { NAME = 2 }\n",
     "shape.attract.reach": LINE + LOCKS + "[[shape]]\nop = 'attract'\ncurve = 'line'\nNAME = 6\n",
+    **{
+        f"shape.{op}.amount": LOCKS + f"[[shape]]\nop = '{op}'\nNAME = {{ value = 0.4, vary = 0.5 }}\nwavelength = 3\n"
+        for op in NOISES
+    },
+    **{f"shape.{op}.size": LOCKS + f"[[shape]]\nop = '{op}'\nNAME = 3\n" for op in (*NOISES, "smooth")},
+    "curl.phase_size": LOCKS + "[curl]\npreset = '3A'\nphase_spread = 1\nNAME = 5\n",
+    "*.noise_size": LOCKS.replace("[locks]", "lift = { noise = 0.5, NAME = 5 }\n[locks]"),
     "curl.phase_alike": LOCKS + "[curl]\npreset = '3A'\nphase_spread = 1\nNAME = { value = 0.5, vary = 0.5 }\n",
     "*.mask.soft": LOCKS + "[[shape]]\nop = 'loft'\n[shape.mask]\nregion = 'scalp'\nNAME = 3\n",
 }

@@ -114,7 +114,8 @@ def test_loft_raises_locks_and_keeps_their_length():
 
 def test_clumping_draws_tips_together_and_leaves_roots():
     plain = BASE[: BASE.index("[curl]")]
-    loose, tight = groom(plain), groom(plain + "[[shape]]\nop='clump'\nsize=4\namount={ value = 1, vary = 0 }\n")
+    clumps = "[[shape]]\nop='clump'\nsize=4\ntightness={ value = 1, vary = 0 }\n"
+    loose, tight = groom(plain), groom(plain + clumps)
     tips = lambda g: g.locks.points.reshape(60, 64, 3)[:, -1]  # noqa: E731
     nearest = lambda p: np.sort(np.linalg.norm(p[:, None] - p[None], axis=2), axis=1)[:, 1]  # noqa: E731
     assert np.array_equal(loose.locks.roots, tight.locks.roots)
@@ -132,7 +133,7 @@ def test_a_zone_shortens_the_hair_in_its_direction():
 
 def test_hair_flows_away_from_a_part_line_and_locks_do_not_mix_its_sides():
     flat = BASE[: BASE.index("[curl]")].replace(
-        "count = 20", "count = 150\nlift = 0.1\ngravity_bend = 0\npart = { reach = 20 }"
+        "count = 20", "count = 150\nlift = 0.1\ngravity_bend = 0\npart_line = { falloff = 20 }"
     )
     locks = groom(flat).locks
     away = np.abs(locks.roots[:, 0])
@@ -211,4 +212,4 @@ def test_an_edit_recomputes_only_what_follows_it():
 def test_progress_reports_every_stage_before_and_after():
     steps = []
     groom(progress=lambda *step: steps.append(step))
-    assert steps == [(name, done, 1) for name in ("guides", "locks", "curl", "clean") for done in (0, 1)]
+    assert steps == [(name, done, 1) for name in ("guides", "locks", "curl", "collide") for done in (0, 1)]

@@ -15,14 +15,14 @@ from ringlet import Curves, UserError, _core
 from ringlet.groom import make_groom, parse_recipe
 
 OPERATORS = {
-    "smooth": "size = 6",
+    "smooth": "wavelength = 6",
     "length": "factor = 0.7",
     "lift": "angle = 25",
     "loft": "amount = 2",
     "bend": "angle = 60",
-    "scraggle": "amount = 1",
-    "noise": "amount = 1",
-    "frizz": "amount = 0.3\nsize = 2",
+    "scraggle": "magnitude = 1",
+    "noise": "magnitude = 1",
+    "frizz": "magnitude = 0.3\nwavelength = 2",
     "clump": "tightness = { value = 0.8, vary = 0 }\nsize = 3",
     "part": "amount = 2",
     "tie": "curve = 'tail'",
@@ -218,7 +218,7 @@ def test_invalid_masks_are_refused_in_one_line():
 def test_smooth_removes_short_waves_and_halves_those_of_its_size():
     u = np.linspace(0.0, 0.16, 161)
     wave = lambda length: np.stack([0.0003 * np.sin(2 * np.pi * u / length), u, 0 * u], axis=1)  # noqa: E731
-    smoothed = on_sheet("op = 'smooth'\nsize = 2", [wave(0.005), wave(0.02), wave(0.08), upright(161, 0.16)])
+    smoothed = on_sheet("op = 'smooth'\nwavelength = 2", [wave(0.005), wave(0.02), wave(0.08), upright(161, 0.16)])
     height = lambda k: np.ptp(smoothed[k][40:120, 0]) / 0.0006  # noqa: E731
     assert height(0) < 0.01
     assert height(1) == pytest.approx(0.5, abs=0.03)
@@ -271,7 +271,7 @@ def test_bend_makes_an_arc_of_the_angle_towards_its_direction():
 def test_noise_moves_neighbours_together_and_scraggle_does_not():
     pair = [upright(x=0.02), upright(x=0.0201), upright(x=-0.08)]
     for op, together in (("noise", True), ("scraggle", False)):
-        tips = [curve[-1] for curve in on_sheet(f"op = '{op}'\namount = 2\nsize = 3", pair)]
+        tips = [curve[-1] for curve in on_sheet(f"op = '{op}'\nmagnitude = 2\nwavelength = 3", pair)]
         moved = [tip - curve[-1] for tip, curve in zip(tips, pair, strict=True)]
         assert (np.linalg.norm(moved[0] - moved[1]) < 0.05 * np.linalg.norm(moved[0])) == together
         assert np.linalg.norm(moved[0] - moved[2]) > 0.2 * np.linalg.norm(moved[0])
@@ -279,7 +279,7 @@ def test_noise_moves_neighbours_together_and_scraggle_does_not():
 
 @pytest.mark.parametrize("op", ["scraggle", "noise", "frizz"])
 def test_displacements_keep_lengths_or_say_how_much_longer_locks_become(op):
-    text = f"[[shape]]\nop = '{op}'\namount = 6\nsize = 1.5\n"
+    text = f"[[shape]]\nop = '{op}'\nmagnitude = 6\nwavelength = 1.5\n"
     plain, longer, kept = locks(), locks(text), locks(f"{text}keep = 'length'\n")
     assert longer.lengths().max() > 2.0 * plain.lengths().max()
     np.testing.assert_allclose(kept.lengths(), plain.lengths(), rtol=1e-3)
@@ -293,11 +293,11 @@ def test_displacements_keep_lengths_or_say_how_much_longer_locks_become(op):
 
 
 def test_frizz_is_transverse_and_refused_on_a_coarse_shape():
-    frizzed = on_sheet("op = 'frizz'\namount = 0.2\nsize = 2", [upright(61)])[0]
+    frizzed = on_sheet("op = 'frizz'\nmagnitude = 0.2\nwavelength = 2", [upright(61)])[0]
     np.testing.assert_allclose(frizzed[:, 1], upright(61)[:, 1], atol=1e-12)
     assert 0.0005 < np.abs(frizzed[10:, [0, 2]] - [0.02, 0]).max() < 0.02
-    with pytest.raises(UserError, match=r"frizz.size is 0.002 m, less than the 0.01 m between .* to 101"):
-        on_sheet("op = 'frizz'\nsize = 0.2", [upright()])
+    with pytest.raises(UserError, match=r"frizz.wavelength is 0.002 m, less than the 0.01 m between .* to 101"):
+        on_sheet("op = 'frizz'\nwavelength = 0.2", [upright()])
 
 
 def test_clumps_of_a_second_level_are_within_those_of_the_first():

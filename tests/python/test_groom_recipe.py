@@ -132,7 +132,7 @@ def test_a_number_keeps_the_ramp_and_the_variation_of_the_default():
     assert width.ramp == preset["ramp"] and width.vary == preset["vary"]
     table = recipe("[curl]\npreset = '3C'\nwidth = { vary = 0.5 }").curl.width
     assert table.value == pytest.approx(0.009) and table.vary == 0.5 and table.ramp == preset["ramp"]
-    scraggle = recipe("[[shape]]\nop = 'scraggle'\namount = 2").shape[0].amount
+    scraggle = recipe("[[shape]]\nop = 'scraggle'\nmagnitude = 2").shape[0].magnitude
     assert scraggle.along(0.0) == 0.0 and scraggle.along(1.0) == 1.0
 
 

@@ -29,13 +29,13 @@ count = 12
 points = 64
 [[shape]]
 op = "scraggle"
-amount = 0.3
+magnitude = 0.3
 [[shape]]
 op = "loft"
 amount = 0.5
 [[shape]]
 op = "scraggle"
-amount = 0.1
+magnitude = 0.1
 [curl]
 preset = "3B"
 width = 1
@@ -68,10 +68,10 @@ def test_a_variant_changes_only_its_own_values(folder):
 
 
 def test_operators_are_changed_by_name_and_removed_with_false(folder):
-    text = 'extends = "base.toml"\ncurl = false\n[shape]\nloft = false\n"scraggle 2" = { amount = 0.7 }\n'
+    text = 'extends = "base.toml"\ncurl = false\n[shape]\nloft = false\n"scraggle 2" = { magnitude = 0.7 }\n'
     down = read_recipe(variant(folder, text))
     assert [op.op for op in down.shape] == ["scraggle", "scraggle"]
-    assert [op.amount.value for op in down.shape] == pytest.approx([0.003, 0.007])
+    assert [op.magnitude.value for op in down.shape] == pytest.approx([0.003, 0.007])
     assert down.curl is None
     assert read_recipe(variant(folder, 'extends = "base.toml"\nshape = []\n')).shape == []
 

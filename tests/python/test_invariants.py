@@ -71,7 +71,7 @@ def played(folder, *, unit: float = 0.01, up: str = "Y", size: float = 1.0):
     for name, value in (("length", 5), ("width", 1.0), ("pitch", 1.5)):
         edit(recipe, f"{name} = {value}", f"{name} = {size * value}")
     start = np.sqrt(1.01 * size**2 - 0.01)  # curls open over hypot(start, 1 mm)
-    edit(recipe, "[curl]", f"[curl]\nstart = {start}\nphase_size = {3 * size}")
+    edit(recipe, "[curl]", f"[curl]\nstart = {start}\nphase_wavelength = {3 * size}")
     recipe.write_text(recipe.read_text() + f"[collide]\nmargin = {0.05 * size}\n")
     file.write_text(
         file.read_text()

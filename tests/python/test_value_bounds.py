@@ -41,8 +41,8 @@ def painted(value, name="map"):
         ("[hairs]\nwidth = { value = '0.07 mm', ramp = [[0, 1], [1, 1e3]] }", ["hairs.width", "7e-05 m times 1000"]),
         ("[hairs]\nradius = { value = 1, region = { a = 9 }, ramp = [[0, 2]] }", ["hairs.radius", "0.09 m times 2"]),
         (
-            "[[shape]]\nop = 'noise'\namount = { value = 1, ramp = [[0, 0], [1, 101]] }",
-            ["shape[0].amount", "0.01 m times"],
+            "[[shape]]\nop = 'noise'\nmagnitude = { value = 1, ramp = [[0, 0], [1, 101]] }",
+            ["shape[0].magnitude", "0.01 m times"],
         ),
     ],
 )

@@ -31,7 +31,7 @@ size = 2
 # None knows where to go.
 [[shape]]
 op = "scraggle"
-amount = 0.5
+magnitude = 0.5
 
 # The look.
 [curl]
@@ -84,10 +84,12 @@ def test_a_missing_table_is_created(document: Document):
 
 
 def test_settings_in_lists_and_operators_are_set_and_removed(document: Document):
-    document.set([(["guides", "zone", 0, "spread"], 30), (["shape", 1, "size"], 2.5), (["shape", 0, "size"], None)])
+    document.set(
+        [(["guides", "zone", 0, "spread"], 30), (["shape", 1, "wavelength"], 2.5), (["shape", 0, "size"], None)]
+    )
     settings = document.contents()
     assert settings["guides"]["zone"][0]["spread"] == 30
-    assert settings["shape"] == [{"op": "clump"}, {"op": "scraggle", "amount": 0.5, "size": 2.5}]
+    assert settings["shape"] == [{"op": "clump"}, {"op": "scraggle", "magnitude": 0.5, "wavelength": 2.5}]
 
 
 def test_operators_move_with_their_comments(document: Document):

@@ -37,7 +37,7 @@ file = "{head}"
 {mesh}region = "{region}"
 [guides]
 count = 110
-length = {{ value = {length}, vary = 0.08, noise = 0.13, noise_size = 4 }}
+length = {{ value = {length}, vary = 0.08, noise = 0.13, noise_wavelength = 4 }}
 lift = {{ value = {lift}, noise = 0.12 }}
 gravity_bend = {gravity_bend}
 zone = [{{ toward = [0, 0.4, 1], spread = 50, length = 0.5, lift = 0.85, gravity_bend = 1.6 }}]
@@ -46,8 +46,8 @@ count = {locks}
 points = {points}
 [[shape]]
 op = "scraggle"
-amount = 0.5
-size = 3
+magnitude = 0.5
+wavelength = 3
 {more}
 [hairs]
 per_lock = 60

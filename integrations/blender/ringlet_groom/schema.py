@@ -16,7 +16,7 @@ SECTIONS = {
     "recipe": ("guides", "locks", "curl", "hairs", "color", "fiber", "collide"),
     "shot": ("strands", "contact", "solver", "forces", "rest"),
 }
-VARIATION = ("vary", "noise", "noise_size", "map", "ramp")  # of a value that differs from lock to lock
+VARIATION = ("vary", "noise", "noise_wavelength", "map", "ramp")  # of a value that differs from lock to lock
 DEPTH = 2  # tables in tables that are flattened
 
 

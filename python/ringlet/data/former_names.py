@@ -43,6 +43,13 @@ RECIPE = (
     Rename("shape.gather", "tie"),
     Rename("shape.tie.tie", "curve"),
     Rename("shape.clump.amount", "tightness"),
+    Rename("shape.frizz.amount", "magnitude"),
+    Rename("shape.frizz.size", "wavelength"),
+    Rename("shape.noise.amount", "magnitude"),
+    Rename("shape.noise.size", "wavelength"),
+    Rename("shape.scraggle.amount", "magnitude"),
+    Rename("shape.scraggle.size", "wavelength"),
+    Rename("shape.smooth.size", "wavelength"),
     Rename("shape.cornrow.droop", "gravity_bend"),
     Rename("shape.part.parting", "part_line"),
     Rename("shape.attract.reach", "falloff"),
@@ -51,10 +58,12 @@ RECIPE = (
     Rename("shape.part.part_line.line", "curve"),
     Rename("shape.part.part_line.reach", "falloff"),
     Rename("curl.phase_alike", "phase_coherence"),
+    Rename("curl.phase_size", "phase_wavelength"),
+    Rename("*.noise_size", "noise_wavelength"),
     Rename("*.mask.soft", "falloff"),
 )
-SHOT: tuple[Rename, ...] = ()
-RENAMES = RECIPE + SHOT
+SHOT = (Rename("*.noise_size", "noise_wavelength"),)
+RENAMES = tuple(dict.fromkeys(RECIPE + SHOT))
 ATTRIBUTES = {"nail": "pin", "led_by_nail": "led_by_pin"}  # of curves in stored grooms and rest shapes
 
 
@@ -175,21 +184,25 @@ def _by_place() -> tuple[dict[tuple[str, ...], Rename], dict[tuple[str, ...], Re
 
 @cache
 def first_name(purpose: str) -> str:
-    """A purpose of random numbers by the first name of its setting, so that a rename changes no groom.
+    """A purpose of random numbers by the first names of its stage and setting, so that a rename changes no groom.
 
-    purpose: stage and setting, such as ``cornrow 2/gravity_bend``
+    purpose: such as ``cornrow 2/gravity_bend`` or ``hairs/families/tightness``
     """
     stage, slash, setting = purpose.partition("/")
     kind, number = _stage(stage)
-    return f"{kind}{number}{slash}{_first().get((kind, setting), setting)}"
+    place, name = [kind], _first().get((kind,), kind) + number + slash
+    for between, part in re.findall(r"(^|[./])([^./]*)", setting):
+        place.append(part)
+        name += between + _first().get(tuple(place), part)
+    return name
 
 
 @cache
-def _first() -> dict[tuple[str, str], str]:
-    """First names of settings by their stage and present name."""
+def _first() -> dict[tuple[str, ...], str]:
+    """First names by the place of the present name; operators are in no table."""
     found = {}
     for rename in RENAMES:
-        stage, _, setting = rename.place.removeprefix("shape.").partition(".")
-        tables, dot, _ = setting.rpartition(".")
-        found[stage, f"{tables}{dot}{rename.name}"] = setting
+        *tables, former = rename.place.split(".")
+        if tables != ["shape"]:  # operators are renamed where two become one
+            found[(*tables[tables[:1] == ["shape"] :], rename.name)] = former
     return found

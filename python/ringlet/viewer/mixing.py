@@ -145,7 +145,7 @@ def _stated_varied(value: Varied, default: Any, unit: str, *, length: bool) -> A
         if isinstance(one, dict):
             table[name] = {str(key): _stated(own, unit, length=length) for key, own in one.items()}
         else:
-            table[name] = _stated(one, unit, length=name == "noise_size")
+            table[name] = _stated(one, unit, length=name == "noise_wavelength")
     if value.map is not None:
         table["map"] = value.map
     varies = isinstance(default, Varied) and (default.vary or default.noise)  # a number alone takes that away

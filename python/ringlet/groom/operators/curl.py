@@ -87,7 +87,7 @@ class Curl(Operator):
     phase_coherence: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
         default=Varied(value=0.0), description="how much of that spread neighbours share: 0 nothing, 1 all"
     )
-    phase_size: Annotated[float, Quantity("m", 1e-3, 1.0)] = Field(
+    phase_wavelength: Annotated[float, Quantity("m", 1e-3, 1.0)] = Field(
         default=0.03, description="distance over which neighbours forget one another's phase"
     )
     phase_lock: PhaseLock | None = Field(default=None, description="neighbours whose curls fall in with one another")
@@ -236,7 +236,7 @@ class Curl(Operator):
             context.values(self, name, curves) for name in ("phase_spread", "phase_coherence", "phase")
         )
         own = context.random("phase").uniform(curves.ids)
-        shared = context.random("phase_field").field(curves.roots, self.phase_size)
+        shared = context.random("phase_field").field(curves.roots, self.phase_wavelength)
         return phase + 360.0 * spread * ((1.0 - shared_fraction) * own + shared_fraction * shared)
 
 
