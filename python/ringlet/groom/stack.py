@@ -273,8 +273,8 @@ def _lengthened(name: str, before: Curves, after: Curves) -> Iterator[str]:
         lock = int(np.argmax(now / was))
         yield (
             f"{name} makes {much.sum()} of {len(was)} locks more than {MUCH_LONGER:g} times as long, lock "
-            f"{after.ids[lock]} {now[lock]:.3g} instead of {was[lock]:.3g} m; lower its magnitude, raise its wavelength, or "
-            "give it keep = 'length'"
+            f"{after.ids[lock]} {now[lock]:.3g} instead of {was[lock]:.3g} m; lower its magnitude, raise its "
+            "wavelength, or give it keep = 'length'"
         )
 
 
