@@ -27,7 +27,7 @@ count = 110
 length = {{ value = 8.4, vary = 0.08, noise = 0.13, noise_wavelength = 4 }}
 lift = {{ value = 0.86, noise = 0.12 }}
 gravity_bend = 0.48
-zone = [{{ toward = [0, 0.4, 1], spread = 50, length = 0.5, lift = 0.85, gravity_bend = 1.6 }}]
+zone = [{{ toward = [0, 0.4, 1], angle = 50, length = 0.5, lift = 0.85, gravity_bend = 1.6 }}]
 [locks]
 count = {locks}
 points = {points}

@@ -36,9 +36,14 @@ def bundles(recipe: Recipe, numbers: tuple[int, ...]) -> list[list[NDArray[np.fl
         "locks": Locks(count=40, points=500),
         "shape": [],
         "scalp": recipe.scalp.model_copy(update={"region": None}),
-        "curl": recipe.curl.model_copy(update={"keep": "silhouette", "phase_lock": None}),
+        "curl": recipe.curl.model_copy(update={"keep": "silhouette", "phase_groups": None}),
         "hairs": recipe.hairs.model_copy(
-            update={"density": None, "spread": HairSettings().spread, "per_lock": Varied(value=50), "points": 900}
+            update={
+                "density": None,
+                "root_radius": HairSettings().root_radius,
+                "per_lock": Varied(value=50),
+                "points": 900,
+            }
         ),
     }
     hairs = make_hairs(make_groom(recipe.model_copy(update=upright), floor)).curves

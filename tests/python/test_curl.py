@@ -217,7 +217,7 @@ def test_locked_neighbours_align_phase_and_hand_towards_the_tip():
     guides = straight(9, apart=0.004)
     loose = "curls = 8\nwidth = 1\nphase_spread = 1\nright_handed = 0.5\n"
     alone = curled(loose, guides)
-    locked = curled(loose + "phase_lock = { size = 40, length = 4, cohesion = 0 }", guides)
+    locked = curled(loose + "phase_groups = { size = 40, length = 4, cohesion = 0 }", guides)
 
     def agreement(locks, height):
         off = locks - guides.roots[:, None]
@@ -233,7 +233,7 @@ def test_locked_neighbours_align_phase_and_hand_towards_the_tip():
 
 def test_cohesion_draws_locked_neighbours_together():
     guides = straight(9, apart=0.004)
-    settings = "curls = 8\nwidth = 1\nphase_spread = 1\nphase_lock = {{ size = 40, length = 4, cohesion = {} }}"
+    settings = "curls = 8\nwidth = 1\nphase_spread = 1\nphase_groups = {{ size = 40, length = 4, cohesion = {} }}"
     apart, together = (curled(settings.format(cohesion), guides)[:, -1] for cohesion in (0, 1))
     assert np.ptp(apart[:, 0]) > 0.025
     assert np.ptp(together, axis=0).max() < 1e-6
@@ -329,7 +329,7 @@ def test_locks_change_continuously_with_every_value(name, keep):
         "wave": 0.5,
         "phase_coherence": 0.5,
         "keep": f"'{keep}'",
-        "phase_lock": "{ size = 4, length = 4 }",
+        "phase_groups": "{ size = 4, length = 4 }",
     }
     guides = straight(40, apart=0.0045)
 

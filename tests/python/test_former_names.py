@@ -23,7 +23,7 @@ from small_example import write_example
 
 import ringlet
 from ringlet import UserError
-from ringlet.groom import make_groom, parse_recipe
+from ringlet.groom import make_groom, make_hairs, parse_recipe
 
 
 @pytest.fixture
@@ -66,6 +66,16 @@ RECIPES = {
     **{f"shape.{op}.size": LOCKS + f"[[shape]]\nop = '{op}'\nNAME = 3\n" for op in (*NOISES, "smooth")},
     "curl.phase_size": LOCKS + "[curl]\npreset = '3A'\nphase_spread = 1\nNAME = 5\n",
     "*.noise_size": LOCKS.replace("[locks]", "lift = { noise = 0.5, NAME = 5 }\n[locks]"),
+    "guides.zone.spread": LOCKS.replace("[locks]", "zone = [{ toward = [0, 0, 1], lift = 0, NAME = 60 }]\n[locks]"),
+    "shape.edges.gather": LOCKS + "[[shape]]\nop = 'edges'\nwithin = 9\nNAME = 0.9\n",
+    "shape.tie.spread": LOCKS + "[[shape]]\nop = 'tie'\ntoward = [0, 1, 0]\nNAME = { value = 4, vary = 0.5 }\n",
+    "curl.phase_lock": LOCKS + "[curl]\npreset = '3A'\nNAME = { size = 3, cohesion = { value = 0.5, vary = 1 } }\n",
+    "hairs.spread": LOCKS + "[hairs]\nNAME = { value = 0.4, vary = 0.5 }\n",
+    "hairs.families.amount": LOCKS + "[hairs.families]\nNAME = { value = 0.7, vary = 0.4 }\n",
+    "hairs.families.size": LOCKS + "[hairs.families]\nNAME = { value = 0.05, vary = 0.4 }\n",
+    "hairs.curl.alike": LOCKS + "[curl]\npreset = '3A'\n[hairs.families]\n[hairs.curl]\ndrift = 0.5\nNAME = 0.3\n",
+    "hairs.coil.alike": LOCKS + "[hairs]\npoints = 400\n[hairs.families]\n[hairs.coil]\npitch = 2\nNAME = 0.3\n",
+    "edit.move.reach": LOCKS + "[[edit]]\nlock = 1\nmove = [{ at = 0.5, by = [1, 0, 0], NAME = 0.3 }]\n",
     "curl.phase_alike": LOCKS + "[curl]\npreset = '3A'\nphase_spread = 1\nNAME = { value = 0.5, vary = 0.5 }\n",
     "*.mask.soft": LOCKS + "[[shape]]\nop = 'loft'\n[shape.mask]\nregion = 'scalp'\nNAME = 3\n",
 }
@@ -89,6 +99,7 @@ def test_a_recipe_by_a_former_name_gives_the_same_groom_and_a_note(rename):
     assert old.model_dump() == new.model_dump()
     one, two = (make_groom(recipe, ball()) for recipe in (old, new))
     np.testing.assert_array_equal(one.locks.points, two.locks.points)
+    np.testing.assert_array_equal(make_hairs(one).curves.points, make_hairs(two).curves.points)
     assert all(np.array_equal(one.locks.point[name], values) for name, values in two.locks.point.items())
 
 

@@ -123,7 +123,7 @@ def test_clumping_draws_tips_together_and_leaves_roots():
 
 
 def test_a_zone_shortens_the_hair_in_its_direction():
-    zone = BASE.replace("length = 6", "length = 6\nzone = [{ toward = [0, 0, 1], spread = 60, length = 0.5 }]")
+    zone = BASE.replace("length = 6", "length = 6\nzone = [{ toward = [0, 0, 1], angle = 60, length = 0.5 }]")
     plain, zoned = groom().guides, groom(zone).guides
     change = zoned.lengths() / plain.lengths()
     front, back = plain.roots[:, 2].argmax(), plain.roots[:, 2] < 0.0

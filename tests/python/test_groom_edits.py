@@ -193,7 +193,7 @@ def test_a_moved_point_moves_its_neighbourhood_and_keeps_the_rest(recipe):
     change(
         recipe,
         "[collide]",
-        f"[[edit]]\nlock = {before.ids[4]}\nmove = [{{ at = 0.5, by = [1, 0, 0], reach = 0.25 }}]\n[collide]",
+        f"[[edit]]\nlock = {before.ids[4]}\nmove = [{{ at = 0.5, by = [1, 0, 0], falloff = 0.25 }}]\n[collide]",
     )
     moved = np.linalg.norm(locks(recipe)[4] - before[4], axis=1)
     u = np.linspace(0, 1, 64)

@@ -63,7 +63,7 @@ def test_hairs_of_other_point_counts_follow_the_lock():
 
 
 def test_roots_of_hairs_are_on_the_scalp_around_their_lock():
-    made = groom("spread = '4 mm'\n")
+    made = groom("root_radius = '4 mm'\n")
     hairs = make_hairs(made).curves
     assert np.isin(hairs.curve["root_triangle"], ball().regions["scalp"]).all()
     at = np.einsum(
@@ -184,7 +184,7 @@ file = "g.usda"
 points = 40
 [hairs]
 per_lock = 50
-spread = "6 mm"
+root_radius = "6 mm"
 radius = "1 mm"
 stray = 0
 frizz = 0
@@ -222,7 +222,7 @@ def test_cached_hairs_equal_rebuilt_hairs():
     again = make_hairs(wide, memory=memory).curves.points.copy()
     assert memory.hairs is kept
     assert np.array_equal(again, make_hairs(wide).curves.points)
-    make_hairs(groom("spread = '5 mm'\n"), memory=memory)
+    make_hairs(groom("root_radius = '5 mm'\n"), memory=memory)
     assert memory.hairs is not kept
 
 

@@ -225,7 +225,7 @@ def test_the_rise_of_locks_goes_by_maps_and_ramps():
 
 def test_the_spread_of_a_tail_has_a_ramp():
     made = [
-        tied(f"{TOP}spread = {{ value = 4, ramp = {ramp} }}").locks for ramp in ("[[0, 1], [1, 1]]", "[[0, 0], [1, 1]]")
+        tied(f"{TOP}flare = {{ value = 4, ramp = {ramp} }}").locks for ramp in ("[[0, 1], [1, 1]]", "[[0, 0], [1, 1]]")
     ]
     apart = []
     for locks in made:

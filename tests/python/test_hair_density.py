@@ -56,7 +56,7 @@ def test_a_density_is_painted_and_masked():
 
 
 def test_cover_raises_the_density_until_so_much_of_the_scalp_is_hidden():
-    lying = "spread = '8 mm'\nradius = '8 mm'\n"
+    lying = "root_radius = '8 mm'\nradius = '8 mm'\n"
     thin, thick = dense(lying + "cover = 0.6\n"), dense(lying + "cover = 0.9\n")
     assert np.isclose(hair_cover(thin).seen(), 0.4, atol=0.03) and np.isclose(hair_cover(thick).seen(), 0.1, atol=0.03)
     assert hairs_per_cm2(thin) < 0.7 * hairs_per_cm2(thick)
@@ -111,7 +111,7 @@ def test_a_density_counts_the_share_of_a_section_for_every_strand(pattern):
 
 
 def test_hair_does_not_crowd_at_the_border_of_the_scalp():
-    height = make_hairs(dense("density = 60\nspread = '12 mm'\n")).curves.roots[:, 1]  # the border is at 0
+    height = make_hairs(dense("density = 60\nroot_radius = '12 mm'\n")).curves.roots[:, 1]  # the border is at 0
     band = 0.002
     in_band = (height < band).mean() / (height < 5 * band).mean()
     assert in_band < 0.35  # 0.2 where hair is even

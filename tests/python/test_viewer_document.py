@@ -21,7 +21,7 @@ unit = "cm" # of lengths
 count = 12
 length = 8 # about a hand
 zone = [
-    { toward = [0, 0, 1], spread = 50 }, # a fringe
+    { toward = [0, 0, 1], angle = 50 }, # a fringe
 ]
 
 [[shape]]
@@ -85,10 +85,10 @@ def test_a_missing_table_is_created(document: Document):
 
 def test_settings_in_lists_and_operators_are_set_and_removed(document: Document):
     document.set(
-        [(["guides", "zone", 0, "spread"], 30), (["shape", 1, "wavelength"], 2.5), (["shape", 0, "size"], None)]
+        [(["guides", "zone", 0, "angle"], 30), (["shape", 1, "wavelength"], 2.5), (["shape", 0, "size"], None)]
     )
     settings = document.contents()
-    assert settings["guides"]["zone"][0]["spread"] == 30
+    assert settings["guides"]["zone"][0]["angle"] == 30
     assert settings["shape"] == [{"op": "clump"}, {"op": "scraggle", "magnitude": 0.5, "wavelength": 2.5}]
 
 
@@ -115,7 +115,7 @@ def test_an_invalid_change_is_refused_and_changes_nothing(document: Document):
     with pytest.raises(UserError, match="none at 7"):
         document.remove_tables("shape", [7])
     with pytest.raises(UserError, match="cannot be set"):
-        document.set([(["guides", "zone", 9, "spread"], 30)])
+        document.set([(["guides", "zone", 9, "angle"], 30)])
     assert document.text == TEXT and not document.can_undo
 
 

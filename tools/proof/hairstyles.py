@@ -40,7 +40,7 @@ count = 110
 length = {{ value = {length}, vary = 0.08, noise = 0.13, noise_wavelength = 4 }}
 lift = {{ value = {lift}, noise = 0.12 }}
 gravity_bend = {gravity_bend}
-zone = [{{ toward = [0, 0.4, 1], spread = 50, length = 0.5, lift = 0.85, gravity_bend = 1.6 }}]
+zone = [{{ toward = [0, 0.4, 1], angle = 50, length = 0.5, lift = 0.85, gravity_bend = 1.6 }}]
 [locks]
 count = {locks}
 points = {points}
@@ -52,7 +52,7 @@ wavelength = 3
 [hairs]
 per_lock = 60
 radius = "3.4 mm"
-spread = "9 mm"
+root_radius = "9 mm"
 """
 
 CURL = "[curl]\nwidth = {}\ncurls = {{ value = {}, vary = 0.1 }}\n"

@@ -54,7 +54,7 @@ def place_hairs(groom: Groom, settings: HairSettings, fraction: float, wider: bo
     disk = _disk(settings, ids, number, full_count[lock])
     hairs = Placed(ids, lock, _cross_section(own, lock, disk), lock_radii(locks, own("radius"))[lock], number > 0)
 
-    spread = np.maximum(own("spread"), np.sqrt(areas / np.pi))
+    spread = np.maximum(own("root_radius"), np.sqrt(areas / np.pi))
     places = roots[lock] + spread[lock, None] * np.einsum("hxk,hk->hx", frames[lock][:, :, :2], disk)
     joins = lock_joins(locks)[lock]
     _root_in_rows(groom, settings, first, number, places, joins)

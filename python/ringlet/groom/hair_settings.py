@@ -53,7 +53,7 @@ class HairSettings(Section):
     hollow: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
         default=Varied(value=0.0), description="where hairs are in it: 0 everywhere, 1 at the rim"
     )
-    spread: Annotated[Varied, Quantity("m", 0.0, 0.1)] = Field(
+    root_radius: Annotated[Varied, Quantity("m", 0.0, 0.1)] = Field(
         default=Varied(value=0.003),
         description="radius on the scalp that a lock's roots cover; those of a section's strand cover its share of the "
         "section, and lie flat up to where it grows",

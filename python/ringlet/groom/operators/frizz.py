@@ -35,7 +35,8 @@ class Frizz(Displacement):
         if (longest := float(along[:, -1].max())) / (count - 1) > self.wavelength:
             raise UserError(
                 f"{context.purpose}.wavelength is {self.wavelength:.4g} m, less than the {longest / (count - 1):.4g} m "
-                f"between the points of a shape; set locks.shape_points to {int(np.ceil(2.0 * longest / self.wavelength)) + 1}"
+                "between the points of a shape; set locks.shape_points to "
+                f"{int(np.ceil(2.0 * longest / self.wavelength)) + 1}"
             )
         noise = wander(context.random("wander"), curves.ids, along, self.wavelength)
         tangent = unit(np.gradient(points, axis=1))

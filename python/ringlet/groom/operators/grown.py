@@ -30,7 +30,7 @@ class Zone(Section):
     toward: Direction | None = Field(
         default=None, description="direction from the middle of the scalp, Y up: [0, 0.5, 1] is the forehead"
     )
-    spread: Annotated[float, Quantity("deg", 1.0, 180.0)] = Field(
+    angle: Annotated[float, Quantity("deg", 1.0, 180.0)] = Field(
         default=40.0, description="half the opening angle of the zone"
     )
     mask: Annotated[Mask | None, Quantity("", 0.0, 1.0)] = Field(default=None, description="where it is")
@@ -55,7 +55,7 @@ class Zone(Section):
         if self.toward is not None:
             outward = unit(seeds.points - context.scalp.middle)
             angle = np.degrees(np.arccos(np.clip(outward @ unit(np.array(self.toward)), -1.0, 1.0)))
-            t = np.clip(1.0 - angle / self.spread, 0.0, 1.0)
+            t = np.clip(1.0 - angle / self.angle, 0.0, 1.0)
             weight *= t * t * (3.0 - 2.0 * t)
         if self.mask is not None:
             weight *= self.mask.weights(seeds, context.scalp.mesh, context.random("zone"), f"{what}.mask")[:, 0]

@@ -16,8 +16,8 @@ from ringlet.groom.operators.wander import wander
 
 
 class Scraggle(Displacement):
-    """Noise of long wavelength that grows towards the tip: ``p' = p + magnitude · ramp(u) · noise(s / wavelength)``, with
-    s the arc length from the root. The noise is a B-spline with normally distributed knots, independent per lock."""
+    """Noise of long wavelength that grows towards the tip: ``p' = p + magnitude · ramp(u) · noise(s / wavelength)``,
+    with s the arc length from the root. The noise is a B-spline with normally distributed knots, one for each lock."""
 
     op: Literal["scraggle"] = "scraggle"
     magnitude: Annotated[Ramped, Quantity("m", 0.0, 1.0)] = Field(

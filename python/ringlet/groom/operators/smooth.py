@@ -15,8 +15,8 @@ from ringlet.groom.operators.shape import Shape
 
 
 class Smooth(Shape):
-    """Removes waves shorter than ``wavelength`` from a lock: minimises ``|p' - p|² + λ |Δ²p'|²`` with a fixed root, where
-    λ halves waves of that length. Straight locks stay unchanged."""
+    """Removes waves shorter than ``wavelength`` from a lock: minimises ``|p' - p|² + λ |Δ²p'|²`` with a fixed root,
+    where λ halves waves of that length. Straight locks stay unchanged."""
 
     op: Literal["smooth"] = "smooth"
     wavelength: Annotated[Varied, Quantity("m", 0.0, 10.0)] = Field(
