@@ -36,7 +36,7 @@ def test_gpu_hairs_equal_those_of_the_core(opened: Any, folder: Path, curl: str)
     recipe = folder / "small.recipe.toml"
     recipe.write_text(
         recipe.read_text().replace(
-            "per_lock = 3", "per_lock = 7\nfrizz = 0.3\nroot_radius = 0.4\nblend = 0.6\ntaper = 0.4"
+            "per_lock = 3", "per_lock = 7\nfrizz = 0.3\nroot_radius = 0.4\nblend = 0.6\nlock_taper = 0.4"
         )
         + curl
     )

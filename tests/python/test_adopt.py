@@ -46,7 +46,7 @@ width = {{ value = "8 mm", vary = 0.2 }}
 pitch = {{ value = "12 mm", vary = 0.15 }}
 [hairs]
 per_lock = {PER_LOCK}
-radius = "1.5 mm"
+lock_radius = "1.5 mm"
 """
 
 

@@ -70,6 +70,10 @@ RECIPES = {
     "shape.edges.gather": LOCKS + "[[shape]]\nop = 'edges'\nwithin = 9\nNAME = 0.9\n",
     "shape.tie.spread": LOCKS + "[[shape]]\nop = 'tie'\ntoward = [0, 1, 0]\nNAME = { value = 4, vary = 0.5 }\n",
     "curl.phase_lock": LOCKS + "[curl]\npreset = '3A'\nNAME = { size = 3, cohesion = { value = 0.5, vary = 1 } }\n",
+    **{
+        f"hairs.{name}": LOCKS + f"[hairs]\nNAME = {{ value = {value}, vary = 0.5 }}\n"
+        for name, value in {"radius": 0.3, "taper": 0.6, "flatness": 0.6, "stray_radius": 0.5}.items()
+    },
     "hairs.spread": LOCKS + "[hairs]\nNAME = { value = 0.4, vary = 0.5 }\n",
     "hairs.families.amount": LOCKS + "[hairs.families]\nNAME = { value = 0.7, vary = 0.4 }\n",
     "hairs.families.size": LOCKS + "[hairs.families]\nNAME = { value = 0.05, vary = 0.4 }\n",

@@ -219,7 +219,7 @@ def test_the_command_checks_repairs_and_draws(tmp_path):
 def test_the_command_says_how_thick_locks_are_with_their_hairs(tmp_path):
     folder = write_example(tmp_path)
     recipe = folder / "small.recipe.toml"
-    wide = "[hairs]\nradius = { value = 0.2, ramp = [[0, 1], [1, 0.5]] }"
+    wide = "[hairs]\nlock_radius = { value = 0.2, ramp = [[0, 1], [1, 0.5]] }"
     recipe.write_text(recipe.read_text().replace("[hairs]", wide))
     assert ringlet.check_groom(recipe)["lock_thickness"] == pytest.approx(0.004)
     said = CliRunner().invoke(app, ["check", str(recipe)]).stdout

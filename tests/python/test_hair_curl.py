@@ -25,7 +25,7 @@ start = 0
 irregularity = 0
 [hairs]
 per_lock = 40
-radius = { value = "1 mm", ramp = [[0, 1], [1, 1]] }
+lock_radius = { value = "1 mm", ramp = [[0, 1], [1, 1]] }
 frizz = 0
 stray = 0
 shorter = 0

@@ -56,13 +56,15 @@ def test_a_density_is_painted_and_masked():
 
 
 def test_cover_raises_the_density_until_so_much_of_the_scalp_is_hidden():
-    lying = "root_radius = '8 mm'\nradius = '8 mm'\n"
+    lying = "root_radius = '8 mm'\nlock_radius = '8 mm'\n"
     thin, thick = dense(lying + "cover = 0.6\n"), dense(lying + "cover = 0.9\n")
     assert np.isclose(hair_cover(thin).seen(), 0.4, atol=0.03) and np.isclose(hair_cover(thick).seen(), 0.1, atol=0.03)
     assert hairs_per_cm2(thin) < 0.7 * hairs_per_cm2(thick)
     unchanged = dense(lying + f"density = {hairs_per_cm2(thick):.0f}\ncover = 0.1\n")
     assert np.isclose(hairs_per_cm2(unchanged), hairs_per_cm2(thick), rtol=0.02)
-    assert any("hairs.cover is 0.999, but at 400" in each for each in dense("cover = 0.999\nradius = 0\n").conflicts)
+    assert any(
+        "hairs.cover is 0.999, but at 400" in each for each in dense("cover = 0.999\nlock_radius = 0\n").conflicts
+    )
 
 
 def test_hairs_are_made_once_to_be_written_and_measured(tmp_path, monkeypatch):

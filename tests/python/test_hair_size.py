@@ -24,7 +24,7 @@ COIL = """
 per_lock = 12
 density = 2
 stray = 0.3
-stray_radius = 1
+stray_distance = 1
 
 [hairs.families]
 count = 3

@@ -39,7 +39,10 @@ def painted(value, name="map"):
         ("[curl]\ncurls = 3\nopening = [[0, 0], [1, 11]]", ["curl.opening", "11", "at most 10"]),
         ("[hairs]\nwidth = { value = '0.07 mm', ramp = [[0, 1], [1, 1e38]] }", ["hairs.width.ramp", "1e+38"]),
         ("[hairs]\nwidth = { value = '0.07 mm', ramp = [[0, 1], [1, 1e3]] }", ["hairs.width", "7e-05 m times 1000"]),
-        ("[hairs]\nradius = { value = 1, region = { a = 9 }, ramp = [[0, 2]] }", ["hairs.radius", "0.09 m times 2"]),
+        (
+            "[hairs]\nlock_radius = { value = 1, region = { a = 9 }, ramp = [[0, 2]] }",
+            ["hairs.lock_radius", "0.09 m times 2"],
+        ),
         (
             "[[shape]]\nop = 'noise'\nmagnitude = { value = 1, ramp = [[0, 0], [1, 101]] }",
             ["shape[0].magnitude", "0.01 m times"],

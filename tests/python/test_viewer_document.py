@@ -78,9 +78,9 @@ def test_a_new_setting_is_inserted_before_the_comment_of_the_next_table(document
 
 
 def test_a_missing_table_is_created(document: Document):
-    document.set([(["collide", "margin"], "3 mm"), (["hairs", "radius", "value"], "2 mm")])
+    document.set([(["collide", "margin"], "3 mm"), (["hairs", "lock_radius", "value"], "2 mm")])
     settings = tomllib.loads(document.text)
-    assert settings["collide"] == {"margin": "3 mm"} and settings["hairs"]["radius"]["value"] == "2 mm"
+    assert settings["collide"] == {"margin": "3 mm"} and settings["hairs"]["lock_radius"]["value"] == "2 mm"
 
 
 def test_settings_in_lists_and_operators_are_set_and_removed(document: Document):

@@ -51,7 +51,7 @@ wavelength = 3
 {more}
 [hairs]
 per_lock = 60
-radius = "3.4 mm"
+lock_radius = "3.4 mm"
 root_radius = "9 mm"
 """
 
