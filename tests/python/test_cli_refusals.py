@@ -53,7 +53,7 @@ def test_an_output_format_is_refused_before_the_first_stage(copy, monkeypatch, c
         ("width = 1.0", "width = nan", ["curl.width", "nan"]),
         ("points = 40", "points = 'many'", ["locks.points", "many"]),
         ("points = 40", "points = 4", ["points"]),
-        ("ringlet = 2", "ringlet = 2", ["ringlet", "2"]),
+        ("ringlet = 2", "ringlet = 3", ["ringlet", "2"]),
         ("[scalp]", "[scalp", ["small.recipe.toml", "TOML", "line"]),
         ('file = "head.usda"', 'file = "had.usda"', ["had.usda"]),
         ('region = "scalp"', 'region = "sclap"', ["sclap", "scalp"]),

@@ -12,7 +12,7 @@ from commands import edit, made, refused, run
 from hypothesis import given
 from hypothesis import strategies as st
 from pxr import Sdf
-from ringlet.data.former_names import RECIPE, RENAMES, FormerNames
+from ringlet.data.former_names import RECIPE, RENAMES, FormerNames, present
 from ringlet.data.random import Random
 from ringlet.data.toml import to_toml
 from ringlet.data.toml_keys import spans
@@ -333,3 +333,26 @@ def test_a_stored_groom_is_read_by_former_names(project):
     groom = ringlet.read_groom(project / "groom.usdc")
     np.testing.assert_array_equal(groom.locks.point["pin"], held)
     assert groom.hairs["mask"]["falloff"] == 0.03 and "soft" not in groom.hairs["mask"]
+
+
+# Documents
+
+PAGES = [file for file in sorted(ROOT.glob("docs/**/*.md")) if file.name not in ("former_names.md", "hardening.md")]
+PAGES = [file for file in PAGES if file.parent.name not in ("decisions", "_generated")]
+
+
+def test_no_page_says_a_former_name():
+    blocks = 0
+    for page in PAGES:
+        text = page.read_text()
+        for block in re.findall(r"^```toml\n(.*?)^```", text, re.DOTALL | re.MULTILINE):
+            try:
+                data = tomllib.loads(block)
+            except tomllib.TOMLDecodeError as error:
+                raise AssertionError(f"{page.name}: {error}\n{block}") from error
+            found = present(data, page.name)[1]
+            assert not found and data.get("ringlet", 2) == 2, (page.name, found)
+            blocks += 1
+        said = [rename.former for rename in RENAMES if "." in rename.former and f"`{rename.former}`" in text]
+        assert not said, (page.name, said)
+    assert blocks > 20
