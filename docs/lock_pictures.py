@@ -1,4 +1,4 @@
-"""Draws single locks of every type of hair, and locks with and without a curl of their hairs, for docs/curls.md.
+"""Draws single locks of each type and locks with and without a curl of their hairs (curls.md), and stages (groom.md).
 
 .venv/bin/python docs/lock_pictures.py [TYPE …]
 """
@@ -11,13 +11,14 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
+from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from ringlet.data.quantities import Varied
 from ringlet.groom.hair_settings import HairSettings
 from ringlet.groom.operators import Grown, Locks
 
-from ringlet import Mesh
+from ringlet import Mesh, build_groom, build_hairs
 from ringlet.groom import PRESETS, Recipe, make_groom, make_hairs, read_recipe
 
 TYPES = Path(__file__).parents[1] / "examples" / "types"
@@ -85,8 +86,38 @@ def pairs() -> None:
     figure.savefig(IMAGES / "hair_curl.jpg", pil_kwargs={"quality": 82})
 
 
+def stages() -> None:
+    """Draws the stages of a groom in profile: guides, shapes of locks, curled locks, hairs."""
+    recipe = read_recipe(TYPES.parent / "child" / "light.recipe.toml")
+    groom = build_groom(recipe)
+    head, random = groom.scalp.points[:, [2, 1]], np.random.default_rng(1)
+    figure = Figure(figsize=(12, 3.8), dpi=100)
+    figure.subplots_adjust(0.0, 0.0, 1.0, 0.92, 0.0)
+    for axes, (title, curves, width) in zip(
+        figure.subplots(1, 4, sharex=True, sharey=True),
+        (
+            (f"{len(groom.guides)} guides", groom.guides, 1.2),
+            (f"{len(groom.shapes)} locks in shape", groom.shapes, 0.8),
+            ("curled", groom.locks, 0.6),
+            ("with hairs", build_hairs(groom).curves, 0.2),
+        ),
+        strict=True,
+    ):
+        lines = [line for line in np.split(curves.points, curves.offsets[1:-1]) if line[0, 0] < 0]  # of the near side
+        lines.sort(key=lambda line: -line[:, 0].mean())
+        shades = 0.3 + 0.4 * random.random(len(lines))
+        axes.tripcolor(*head.T, groom.scalp.triangles, np.ones(len(head)), cmap=ListedColormap(["#e6ddd4"]))
+        colors = np.column_stack([shades, 0.62 * shades, 0.45 * shades])
+        axes.add_collection(LineCollection([line[:, [2, 1]] for line in lines], colors=colors, linewidths=width))
+        axes.set_aspect("equal")
+        axes.axis("off")
+        axes.set_title(title, fontsize=11, y=1.02)
+    figure.savefig(IMAGES / "stages.jpg", pil_kwargs={"quality": 82})
+
+
 if __name__ == "__main__":
     (IMAGES / "gallery").mkdir(exist_ok=True)
+    stages()
     pairs()
     for kind in sys.argv[1:] or PRESETS:
         locks(kind)

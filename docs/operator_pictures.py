@@ -1,4 +1,4 @@
-"""Makes the pictures of operators for docs/styles.md: panels side by side, mostly without and with an operator.
+"""Makes the pictures of operators for styles.md, outlines.md and brows.md: panels, mostly without and with an operator.
 
     .venv/bin/python docs/operator_pictures.py            all that are missing or out of date
     .venv/bin/python docs/operator_pictures.py tie loc    these, if they are

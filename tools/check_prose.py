@@ -1,7 +1,7 @@
 """Checks the length of paragraphs and sentences in the documents.
 
-Usage: python tools/check_prose.py [--count] [PAGE ...]. Checks all pages that are held to it if none is named. Prints
-one line per hit and exits with 1 if there is one; --count prints the hits of each page.
+Usage: python tools/check_prose.py [--count] [PAGE ...]. Checks all pages if none is named. Prints one line per hit and
+exits with 1 if there is one; --count prints for each page its words, longest paragraph, longest sentence and hits.
 
 A paragraph is a block of lines of text or one list item. Code, tables, headings, directives, HTML, formulas between
 dollar signs, images and the targets of links do not count; inline code counts as one word.
@@ -12,7 +12,6 @@ from __future__ import annotations
 import argparse
 import re
 import sys
-from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
@@ -20,15 +19,7 @@ from typing import NamedTuple
 from check_words import LONGEST, WORD
 
 PAGES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "bench/README.md", "examples/README.md", "docs/**/*.md")
-# Pages that still wait for their rewrite and are not checked. The list only shrinks.
-WAITING: set[str] = {
-    "docs/curls.md",
-    "docs/groom.md",
-    "docs/pictures.md",
-    "docs/styles.md",
-    "docs/viewer.md",
-}
-LONGEST_PARAGRAPH = 120  # words
+MOST = {"paragraph": 120, "sentence": LONGEST}  # words
 SENTENCE_END = re.compile(r"[.!?][)\"'’”*_]*\s")
 
 FENCE = re.compile(r"\s*(?P<fence>`{3,}|~{3,})")
@@ -90,17 +81,31 @@ def plain(text: str) -> str:
     return text
 
 
-def hits(page: str) -> Iterator[tuple[int, str]]:
-    """Line and complaint of each paragraph and each sentence that is too long."""
+def lengths(page: str) -> Iterator[tuple[int, str, int]]:
+    """Line, "paragraph" or "sentence", and number of words of each of both."""
     for line, text in paragraphs(page):
         words = plain(text)
-        if (count := len(WORD.findall(words))) > LONGEST_PARAGRAPH:
-            yield line, f"paragraph of {count} words → at most {LONGEST_PARAGRAPH}"
+        yield line, "paragraph", len(WORD.findall(words))
         begin = 0
         for end in [*(match.end() for match in SENTENCE_END.finditer(words)), len(words)]:
-            if (count := len(WORD.findall(words, begin, end))) > LONGEST:
-                yield line + words.count("\n", 0, begin), f"sentence of {count} words → at most {LONGEST}"
+            yield line + words.count("\n", 0, begin), "sentence", len(WORD.findall(words, begin, end))
             begin = end
+
+
+def hits(page: str) -> Iterator[tuple[int, str]]:
+    """Line and complaint of each paragraph and each sentence that is too long."""
+    for line, unit, count in lengths(page):
+        if count > MOST[unit]:
+            yield line, f"{unit} of {count} words → at most {MOST[unit]}"
+
+
+def summary(page: str) -> str:
+    """Words, longest paragraph, longest sentence and number of hits of a page."""
+    counts: dict[str, list[int]] = {"paragraph": [0], "sentence": [0]}
+    for _, unit, count in lengths(page):
+        counts[unit].append(count)
+    longest = ", ".join(f"longest {unit} {max(of)}" for unit, of in counts.items())
+    return f"{sum(counts['paragraph'])} words, {longest}, {sum(1 for _ in hits(page))} hits"
 
 
 def pages(root: Path) -> list[str]:
@@ -116,13 +121,12 @@ def main() -> int:
     parser.add_argument("--count", action="store_true")
     options = parser.parse_args()
     root = Path(__file__).parents[1]
-    chosen = options.pages or [page for page in pages(root) if page not in WAITING]
-    found = [(page, *hit) for page in chosen for hit in hits((root / page).read_text())]
+    chosen = options.pages or pages(root)
+    texts = {page: (root / page).read_text() for page in chosen}
+    found = [(page, *hit) for page, text in texts.items() for hit in hits(text)]
     lines = [f"{page}:{line}: {complaint}\n" for page, line, complaint in found]
     if options.count:
-        count = Counter((page, complaint.split()[0]) for page, _, complaint in found)
-        pages_hit = sorted({page for page, _, _ in found})
-        lines = [f"{p}: {count[p, 'paragraph']} paragraphs, {count[p, 'sentence']} sentences\n" for p in pages_hit]
+        lines = [f"{page}: {summary(text)}\n" for page, text in texts.items()]
     print("".join(lines), end="")
     return 1 if found else 0
 

@@ -118,4 +118,4 @@ def test_shorter_tighter_and_parted_on_the_left_takes_five_clicks_and_three_drag
     assert drag("curl.width", -0.1) < width
     recipe = tomllib.loads(review.text())
     assert recipe["guides"]["part_line"]["offset"] > 0.0 and not review.errors
-    assert done == {"clicks": 5, "drags": 3}  # docs/viewer.md says so
+    assert done == {"clicks": 5, "drags": 3}  # docs/review_settings.md says so
