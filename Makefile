@@ -42,7 +42,7 @@ build: .venv/built .venv/page ## set up .venv and build: gives .venv/bin/ringlet
 	@$(editable) '.[dev]'
 	@touch $@
 
-demo: build ## groom, simulate and picture the example: writes out/demo
+demo: build ## groom, simulate and render the example: writes out/demo
 	@.venv/bin/ringlet demo -o out/demo
 
 view: build ## the example's curls in the browser, to be changed

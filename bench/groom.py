@@ -13,7 +13,7 @@ from ringlet import Clock, build_groom, build_hairs, read_recipe
 HEAD = Path(__file__).parents[1] / "examples" / "child" / "head.usdc"
 
 RECIPE = """
-ringlet = 1
+ringlet = 2
 [scalp]
 file = '{head}'
 mesh = "/child/skin"

@@ -15,7 +15,7 @@ MEANS = ("candidates", "contacts", "violations", "zone_vertices", "linear_iterat
 PHASES = ("pairs", "assemble", "solve", "search", "filter")
 
 SHOT = """
-ringlet = 1
+ringlet = 2
 groom = "{groom}"
 frames = [1, {frames}]
 preroll = {preroll}

@@ -15,7 +15,7 @@ EXAMPLE = Path(__file__).parents[1] / "examples" / "child"
 ITERATIONS = (1, 2, 3, 5, 10, 20, 60)
 
 SHOT = """
-ringlet = 1
+ringlet = 2
 groom = "{groom}"
 frames = [1, {frames}]
 preroll = 6

@@ -16,7 +16,7 @@ HEAD = Path(__file__).parents[1] / "examples" / "child" / "head.usdc"
 LEAN = 0.01  # displacement of the tip of an edited lock [m]
 
 RECIPE = """
-ringlet = 1
+ringlet = 2
 seed = 7
 [scalp]
 file = '{head}'
@@ -24,24 +24,24 @@ mesh = "/child/skin"
 region = "scalp"
 [guides]
 count = 110
-length = {{ value = 8.4, vary = 0.08, noise = 0.13, noise_size = 4 }}
+length = {{ value = 8.4, vary = 0.08, noise = 0.13, noise_wavelength = 4 }}
 lift = {{ value = 0.86, noise = 0.12 }}
-droop = 0.48
-zone = [{{ toward = [0, 0.4, 1], spread = 50, length = 0.5, lift = 0.85, droop = 1.6 }}]
+gravity_bend = 0.48
+zone = [{{ toward = [0, 0.4, 1], angle = 50, length = 0.5, lift = 0.85, gravity_bend = 1.6 }}]
 [locks]
 count = {locks}
 points = {points}
 [[shape]]
 op = "scraggle"
-amount = 0.5
-size = 3
+magnitude = 0.5
+wavelength = 3
 [curl]
 width = 1.12
 curls = {{ value = 6, vary = 0.1 }}
 """
 
 SHOT = """
-ringlet = 1
+ringlet = 2
 groom = "rest.recipe.toml"
 frames = [1, 2]
 preroll = 0

@@ -20,7 +20,7 @@ EXAMPLE = Path(__file__).parents[1] / "examples" / "child"
 PER_LOCK = 12
 
 SHOT = """
-ringlet = 1
+ringlet = 2
 groom = "{groom}"
 frames = [1, {frames}]
 preroll = 2

@@ -44,7 +44,7 @@ Pictures that are not rendered yet are left out.
 A recipe fits the other head with two lines, as the middle of the skull and the names of regions are the same:
 
 ```toml
-ringlet = 1
+ringlet = 2
 extends = "../looks/bob.recipe.toml"
 
 [scalp]
@@ -57,7 +57,7 @@ PAGE_FOOT = """
 ## What a groomer would still refuse
 
 - Cornrows and flat twists: the lowest row, above the ear, gathers a wide section, whose hair reads as loose strokes.
-- Locs: at the parting, skin shows on the far side of each brick, where hair is drawn away from it.
+- Locs: at the part line, skin shows on the far side of each brick, where hair is drawn away from it.
 - Rounded afro: over the ears it is hollow, and at the nape it hangs lower than a ball.
 - Wash-and-go: highlights of coils read as beads.
 - Box braids: all tails end at one height.
@@ -117,7 +117,7 @@ def shot(table: dict) -> Shot:
 def variant(recipe: Path, head: str) -> str:
     """Text of a recipe for a head: the recipe with another scalp."""
     file = ROOT / "examples" / head / "head.usdc"
-    return f'ringlet = 1\nextends = "{recipe}"\n[scalp]\nfile = "{file}"\nmesh = "/{head}/skin"\n'
+    return f'ringlet = 2\nextends = "{recipe}"\n[scalp]\nfile = "{file}"\nmesh = "/{head}/skin"\n'
 
 
 def digest(recipe: Path, head: str, camera: Shot) -> str:

@@ -33,13 +33,18 @@ def bundles(recipe: Recipe, numbers: tuple[int, ...]) -> list[list[NDArray[np.fl
     assert recipe.curl is not None
     upright = {
         "seed": 5,
-        "guides": Grown(count=40, length=Varied(value=0.12), lift=Varied(value=1.0), droop=Varied(value=0.0)),
+        "guides": Grown(count=40, length=Varied(value=0.12), lift=Varied(value=1.0), gravity_bend=Varied(value=0.0)),
         "locks": Locks(count=40, points=500),
         "shape": [],
         "scalp": recipe.scalp.model_copy(update={"region": None}),
-        "curl": recipe.curl.model_copy(update={"keep": "silhouette", "phase_lock": None}),
+        "curl": recipe.curl.model_copy(update={"keep": "silhouette", "phase_groups": None}),
         "hairs": recipe.hairs.model_copy(
-            update={"density": None, "spread": HairSettings().spread, "per_lock": Varied(value=50), "points": 900}
+            update={
+                "density": None,
+                "root_radius": HairSettings().root_radius,
+                "per_lock": Varied(value=50),
+                "points": 900,
+            }
         ),
     }
     hairs = make_hairs(make_groom(recipe.model_copy(update=upright), floor)).curves

@@ -55,7 +55,7 @@ def read_pictures() -> list[Picture]:
 
 def read_panel(entry: dict, camera: dict) -> Panel:
     """A panel: a recipe with changes."""
-    text = f'ringlet = 1\nextends = "{ROOT / entry["recipe"]}"\n{entry.get("changes", "")}\n'
+    text = f'ringlet = 2\nextends = "{ROOT / entry["recipe"]}"\n{entry.get("changes", "")}\n'
     return Panel(text, entry["head"], shot(camera | entry.get("camera", {})))
 
 

@@ -10,6 +10,7 @@ from typing import Any
 import typer.main
 from ringlet.cli.app import app
 from ringlet.data.files import replacing
+from ringlet.data.former_names import RECIPE, SHOT
 
 import ringlet
 from ringlet import validate
@@ -27,6 +28,7 @@ def write_references(folder: Path) -> None:
         "commands": commands(),
         "python": public_names(),
         "cases": cases(),
+        "former_names": former_names(),
     }.items():
         path, text = folder / f"{name}.md", "\n".join(lines) + "\n"
         if not path.exists() or path.read_text() != text:
@@ -120,6 +122,15 @@ def commands() -> Iterator[str]:
             names = [param.metavar] if param.param_type_name == "argument" else param.opts
             value = f" {param.metavar}" if param.param_type_name == "option" and param.metavar else ""
             yield f"| `{', '.join(names)}{value}` | {cell(param.help or '')} |"
+
+
+def former_names() -> Iterator[str]:
+    """The settings that have a new name."""
+    for title, renames in (("Recipes", RECIPE), ("Shots", SHOT)):
+        if renames:
+            yield f"## {title}\n\n| former name | present name |\n|---|---|"
+            yield from (f"| `{rename.former}` | `{rename.name}` |" for rename in renames)
+            yield ""
 
 
 def public_names() -> Iterator[str]:

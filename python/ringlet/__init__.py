@@ -10,6 +10,7 @@ from ringlet.data import limits
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.files import check_place
+from ringlet.data.former_names import FormerNames
 from ringlet.data.mesh import Clip, Mesh
 from ringlet.data.picture import PictureSettings
 from ringlet.data.reads import recorded
@@ -66,6 +67,7 @@ __version__ = version("ringlet")
 __all__ = [
     "Clip",
     "Curves",
+    "FormerNames",
     "Mesh",
     "PictureSettings",
     "StageSpace",

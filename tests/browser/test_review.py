@@ -35,7 +35,9 @@ def test_gpu_hairs_equal_those_of_the_core(opened: Any, folder: Path, curl: str)
     """The shader implements src/ringlet/groom/hairs.cpp."""
     recipe = folder / "small.recipe.toml"
     recipe.write_text(
-        recipe.read_text().replace("per_lock = 3", "per_lock = 7\nfrizz = 0.3\nspread = 0.4\nblend = 0.6\ntaper = 0.4")
+        recipe.read_text().replace(
+            "per_lock = 3", "per_lock = 7\nfrizz = 0.3\nroot_radius = 0.4\nblend = 0.6\nlock_taper = 0.4"
+        )
         + curl
     )
     review: Review = opened()
@@ -59,7 +61,7 @@ def test_gpu_hairs_of_several_grooms_equal_those_of_the_core(opened: Any, folder
     recipe = folder / "several.recipe.toml"
     recipe.write_text(SEVERAL)
     small = folder / "small.recipe.toml"
-    small.write_text(small.read_text().replace("per_lock = 3", "per_lock = 7\nfrizz = 0.3\nspread = 0.4") + curl)
+    small.write_text(small.read_text().replace("per_lock = 3", "per_lock = 7\nfrizz = 0.3\nroot_radius = 0.4") + curl)
     review: Review = opened("several.recipe.toml")
     review.picture()
     groom = build_groom(recipe)
@@ -157,7 +159,7 @@ def test_a_lock_is_isolated_dragged_and_returned(opened: Any):
     page.mouse.down()
     page.mouse.move(box["x"] + 40, box["y"] - 30, steps=4)
     page.mouse.up()
-    review.until("ringlet.model.documents.recipe.said.edit?.[0]?.move?.some(move => move.reach)")
+    review.until("ringlet.model.documents.recipe.said.edit?.[0]?.move?.some(move => move.falloff)")
     review.settled()
     after = np.array(review.get("Array.from(ringlet.viewer.hair.a.locks.points)")).reshape(8, -1, 3)
     moved = np.linalg.norm(after - np.array(before).reshape(8, -1, 3), axis=2)
@@ -261,7 +263,7 @@ def test_a_value_of_several_locks_is_set_and_reverted_in_one_step(opened: Any):
 
 def test_regions_and_overlays_are_chosen_from_lists(opened: Any, folder: Path):
     recipe = folder / "small.recipe.toml"
-    recipe.write_text(recipe.read_text() + '[[nail]]\nreach = "2 cm"\n[[shape]]\nop = "scraggle"\n')
+    recipe.write_text(recipe.read_text() + '[[pin]]\nlength = "2 cm"\n[[shape]]\nop = "scraggle"\n')
     review: Review = opened()
     review.choose("shape/0")
     review.show_all_settings()
@@ -272,8 +274,8 @@ def test_regions_and_overlays_are_chosen_from_lists(opened: Any, folder: Path):
     review.until("ringlet.model.documents.recipe.said.shape[0].mask?.region === 'scalp'")
     review.settled()
     plain = review.clear_picture()
-    review.until("ringlet.model.measured?.nail.length")
-    review.page.get_by_label("Overlay").select_option("nail")
+    review.until("ringlet.model.measured?.pin.length")
+    review.page.get_by_label("Overlay").select_option("pin")
     assert review.page.get_by_role("note").inner_text().split() == ["free", "held"]
     assert different(review.clear_picture(), plain) > 0.002  # few hairs cover few pixels
     assert not review.errors

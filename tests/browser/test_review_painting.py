@@ -33,12 +33,12 @@ def test_a_map_is_painted_and_a_parting_drawn_on_the_scalp(opened: Any, folder: 
     review.until("!ringlet.model.documents.recipe.undo")
     page.keyboard.press("Escape")
     assert not review.get("ringlet.paint.on")
-    review.get("ringlet.model.draw(['guides', 'part', 'line'], 'parting')")
+    review.get("ringlet.model.draw(['guides', 'part_line', 'curve'], 'parting')")
     mouse.move(x - 40, y)
     mouse.down()
     mouse.move(x + 40, y + 10, steps=6)
     mouse.up()
-    review.until("ringlet.model.said('recipe', ['guides', 'part', 'line']) === 'guides_part_line'")
+    review.until("ringlet.model.said('recipe', ['guides', 'part_line', 'curve']) === 'guides_part_line'")
     points = np.array(review.get("ringlet.model.said('recipe', ['curves', 'guides_part_line', 'points'])"))
     assert 8.0 < np.linalg.norm(points, axis=1).min() <= np.linalg.norm(points, axis=1).max() < 9.1
     assert not review.errors

@@ -129,7 +129,7 @@ def test_a_link_opens_the_view_that_it_was_copied_from(opened: Any, serve: Any):
     one.page.keyboard.press("n")
     one.choose("locks")
     one.page.get_by_label("Light", exact=True).select_option(index=2)
-    one.page.get_by_label("Overlay").select_option("nails")
+    one.page.get_by_label("Overlay").select_option("pins")
     one.get("(ringlet.viewer.orbit(0.9, 0.2), ringlet.viewer.move())")
     one.page.keyboard.press("l")
     one.page.locator(".notice", has_text="link to this view is copied").wait_for()
@@ -142,7 +142,7 @@ def test_a_link_opens_the_view_that_it_was_copied_from(opened: Any, serve: Any):
     two: Review = opened(Linked())
     two.until("ringlet.lock.rows.join() == '0'")
     assert two.get(EYE) == pytest.approx(one.get(EYE), abs=1e-4)
-    assert two.get("[ringlet.model.chosen.place.join(), ringlet.model.overlay]") == ["locks", "nail"]
+    assert two.get("[ringlet.model.chosen.place.join(), ringlet.model.overlay]") == ["locks", "pin"]
     assert two.page.get_by_label("Light", exact=True).evaluate("e => e.selectedIndex") == 2
     two.page.get_by_role("button", name="Follow Guest 1").wait_for(timeout=10_000)
     assert not two.errors and not one.errors

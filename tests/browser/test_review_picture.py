@@ -72,7 +72,7 @@ def test_the_live_picture_has_the_light_of_the_path_traced_one(opened: Any, fold
     (folder / "child").mkdir()
     shutil.copy(EXAMPLES / "child/head.usdc", folder / "child")
     (folder / "look.recipe.toml").write_text(
-        f'ringlet = 1\nextends = "types/{kind}.recipe.toml"\nname = "{name}"\nlocks.count = {locks}\n'
+        f'ringlet = 2\nextends = "types/{kind}.recipe.toml"\nname = "{name}"\nlocks.count = {locks}\n'
         f'hairs.density = "8 /cm2"\nhairs.width = "0.14 mm"\nhairs.points = {points}\ncolor.preset = "{color}"\n'
     )
     review: Review = opened("look.recipe.toml", viewport={"width": 420, "height": 420})

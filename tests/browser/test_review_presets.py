@@ -9,7 +9,7 @@ from review import Review
 
 
 def test_a_preset_is_shown_while_the_pointer_rests_on_it_and_taken_by_a_click(opened: Any, folder: Path):
-    (folder / "wide.preset.toml").write_text("# Wide curls.\nringlet = 1\n[curl]\nwidth = 2.0\npitch = 2.5\n")
+    (folder / "wide.preset.toml").write_text("# Wide curls.\nringlet = 2\n[curl]\nwidth = 2.0\npitch = 2.5\n")
     review: Review = opened(viewport={"width": 1280, "height": 800})
     page = review.page
     before = review.text()

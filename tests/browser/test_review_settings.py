@@ -110,12 +110,12 @@ def test_shorter_tighter_and_parted_on_the_left_takes_five_clicks_and_three_drag
     length = float(review.slider("guides.length").input_value())
     assert drag("guides.length", -0.1) < length
     click(page.get_by_role("button", name="All settings"))
-    click(page.locator('[data-setting="guides.part"] > .field-head > .unfold'))
-    click(page.locator('[data-setting="guides.part"] summary').first)
-    assert drag("guides.part.offset", 0.02) > 0.0  # the character's left is at +X
+    click(page.locator('[data-setting="guides.part_line"] > .field-head > .unfold'))
+    click(page.locator('[data-setting="guides.part_line"] summary').first)
+    assert drag("guides.part_line.offset", 0.02) > 0.0  # the character's left is at +X
     click(page.locator('[data-stage="curl"]'))
     width = float(review.slider("curl.width").input_value())
     assert drag("curl.width", -0.1) < width
     recipe = tomllib.loads(review.text())
-    assert recipe["guides"]["part"]["offset"] > 0.0 and not review.errors
+    assert recipe["guides"]["part_line"]["offset"] > 0.0 and not review.errors
     assert done == {"clicks": 5, "drags": 3}  # docs/review_settings.md says so

@@ -8,7 +8,7 @@ from ringlet.data.mesh import Mesh
 from ringlet.shot import parse_shot
 from ringlet.shot.solver import Solver
 
-SHOT = 'ringlet = 1\ngroom = "groom.usdc"\nframes = [1, 1]\n'
+SHOT = 'ringlet = 2\ngroom = "groom.usdc"\nframes = [1, 1]\n'
 GRAVITY = (0.0, -9.81, 0.0)
 
 

@@ -13,8 +13,8 @@ from ringlet.rest.rod_strains import RodStrains, measure_strains, shape_of_strai
 from ringlet.shot import Material
 from ringlet.shot.solver import Solver
 from ringlet.sim import Obstacle
+from ringlet.sim.hair_pins import spring_forces
 from ringlet.sim.motion import make_strands
-from ringlet.sim.nails import spring_forces
 from ringlet.sim.scene import Scene
 from ringlet.sim.strands import Strands
 
@@ -233,16 +233,16 @@ def test_bodies_that_cannot_push_support_no_lock(points, body, contact):
     assert (free.rest.points == beside.rest.points).all()
 
 
-def nailed_near_tip(groom, firm):
-    nail = np.zeros(len(groom.locks.points), np.float32)
-    nail[-3] = firm
-    locks = Curves(groom.locks.points, groom.locks.offsets, groom.locks.ids, {}, {"nail": nail})
+def pinned_near_tip(groom, firm):
+    pin = np.zeros(len(groom.locks.points), np.float32)
+    pin[-3] = firm
+    locks = Curves(groom.locks.points, groom.locks.offsets, groom.locks.ids, {}, {"pin": pin})
     return Groom(locks, locks, groom.scalp)
 
 
-def test_a_soft_nail_supports_its_share_of_the_weight():
+def test_a_soft_pin_supports_its_share_of_the_weight():
     shot, groom = scene(STRAIGHT, more=MODE)
-    groom = nailed_near_tip(groom, 0.5)
+    groom = pinned_near_tip(groom, 0.5)
     made = equilibrium(shot, groom)
     strands = make_strands(shot, groom, made.rest, made.stiffened)
     strands.place(STRAIGHT)
@@ -252,13 +252,13 @@ def test_a_soft_nail_supports_its_share_of_the_weight():
     assert sag(strands.positions, STRAIGHT) < 1e-6
 
 
-def test_a_nailed_lock_hangs_from_its_nail():
-    """With a nail near its tip the rest shape stays close to the groomed shape, and the lock does not move."""
+def test_a_pinned_lock_hangs_from_its_pin():
+    """With a pin near its tip the rest shape stays close to the groomed shape, and the lock does not move."""
     shot, groom = scene(STRAIGHT, more=MODE)
-    free, groom = equilibrium(shot, groom), nailed_near_tip(groom, 1.0)
-    nailed = equilibrium(shot, groom)
-    assert sag(nailed.rest.points, STRAIGHT) < 0.1 * sag(free.rest.points, STRAIGHT)
-    strands = make_strands(shot, groom, nailed.rest, nailed.stiffened)
+    free, groom = equilibrium(shot, groom), pinned_near_tip(groom, 1.0)
+    pinned = equilibrium(shot, groom)
+    assert sag(pinned.rest.points, STRAIGHT) < 0.1 * sag(free.rest.points, STRAIGHT)
+    strands = make_strands(shot, groom, pinned.rest, pinned.stiffened)
     strands.place(STRAIGHT)
     for _ in range(48):
         strands.step(STRAIGHT, 1 / 24, gravity=GRAVITY)

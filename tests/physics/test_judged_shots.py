@@ -23,7 +23,7 @@ def test_shots_of_the_example_have_no_crossings(shot):
 
 def test_locks_that_start_inside_the_shirt_leave_it_and_cross_nothing_else():
     """Vertices that start inside are tested against bodies from the frame after they leave."""
-    motion = start("nod", "down", locks=100, clean=False)
+    motion = start("nod", "down", locks=100, collide=False)
     frames = list(judged(motion, 3))
     assert 0 < frames[-1].statistics["contact"]["excused"] < sum(found["vertices"] for found in motion.start["inside"])
     assert all(frame.crossings == 0 and frame.statistics["nan"] == 0 for frame in frames)

@@ -1,4 +1,4 @@
-"""Supports that keep locks as groomed: nails, bodies with friction and other locks."""
+"""Supports that keep locks as groomed: pins, bodies with friction and other locks."""
 
 import numpy as np
 import pytest
@@ -239,13 +239,13 @@ def test_friction_holds_a_lock_on_a_slope():
     assert late - soon < 0.05 * shot.strands.radius
 
 
-def test_a_curl_with_rows_of_nails_hangs_between_them():
-    """Rows of nails act as clamps, twist included; the curl between them is in equilibrium."""
+def test_a_curl_with_rows_of_pins_hangs_between_them():
+    """Rows of pins act as clamps, twist included; the curl between them is in equilibrium."""
     curl = helix(60, radius=4e-3, pitch=4e-3) @ rotation((0, 0, 1), np.radians(70)).T
     shot, groom = scene(curl, more=MODE)
-    nail = np.zeros(60, np.float32)
-    nail[25:31] = nail[44:48] = 1.0
-    locks = Curves(groom.locks.points, groom.locks.offsets, groom.locks.ids, {}, {"nail": nail})
+    pin = np.zeros(60, np.float32)
+    pin[25:31] = pin[44:48] = 1.0
+    locks = Curves(groom.locks.points, groom.locks.offsets, groom.locks.ids, {}, {"pin": pin})
     groom = Groom(locks, locks, groom.scalp)
     made = equilibrium(shot, groom)
     assert made.off[0] < 1e-7 and made.stiffened[0] == 1

@@ -7,7 +7,7 @@ from ringlet.data.mesh import Clip, Mesh
 
 from ringlet import _core
 
-SHOT = 'ringlet = 1\ngroom = "groom.usdc"\nframes = [1, 12]\npreroll = 0\n[strands]\nbend_scale = 0.2\n'
+SHOT = 'ringlet = 2\ngroom = "groom.usdc"\nframes = [1, 12]\npreroll = 0\n[strands]\nbend_scale = 0.2\n'
 CONTACT = "[contact]\nradius = 1e-3\n"
 POINTS = 31
 

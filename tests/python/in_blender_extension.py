@@ -18,7 +18,7 @@ import numpy as np
 
 MODULE = "bl_ext.user_default.ringlet_groom"
 LOOK = """
-ringlet = 1
+ringlet = 2
 seed = 3
 
 [guides] # a cap of curls
@@ -253,9 +253,9 @@ def guides(folder: Path) -> dict:
     bpy.ops.ringlet.add_operator(op="frizz")
     wait(settled)
     found |= {"grown": size(head), "operators": [row.op for row in own.shape]}
-    own.shape[0].frizz.amount__value = 0.004
+    own.shape[0].frizz.magnitude__value = 0.004
     wait(settled)
-    found["amount"] = own.shape[0].frizz.amount__value
+    found["magnitude"] = own.shape[0].frizz.magnitude__value
     bpy.ops.ringlet.change_operator(row=0, what="remove")
     wait(settled)
     found["removed"] = [row.op for row in own.shape]

@@ -11,7 +11,7 @@ RADIUS = 9.0  # [cm]
 FRAMES = 4
 
 RECIPE = """
-ringlet = 1
+ringlet = 2
 name = "small"
 
 [scalp]
@@ -35,7 +35,7 @@ per_lock = 3
 """
 
 SHOT = f"""
-ringlet = 1
+ringlet = 2
 groom = "small.recipe.toml"
 frames = [1, {FRAMES}]
 preroll = 0

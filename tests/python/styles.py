@@ -25,7 +25,7 @@ def groom(sections="strands = 3", shape="", locks="points = 120", curl="", top="
 
 def text(sections="strands = 3", shape="", locks="points = 120", curl="", top="", region="", length=16):
     return f"""
-ringlet = 1
+ringlet = 2
 {top}
 [scalp]
 {region}
@@ -33,7 +33,7 @@ ringlet = 1
 count = 30
 length = {length}
 lift = 1
-droop = 0
+gravity_bend = 0
 [locks]
 {locks}
 [locks.sections]
@@ -41,7 +41,7 @@ droop = 0
 {sections}
 {shape}
 {curl}
-[clean]
+[collide]
 margin = 0
 """
 

@@ -31,7 +31,7 @@ from ringlet import (
 LOCKS, PER_LOCK = 40, 6
 
 RECIPE = f"""
-ringlet = 1
+ringlet = 2
 [scalp]
 file = "head.usda"
 region = "scalp"
@@ -46,7 +46,7 @@ width = {{ value = "8 mm", vary = 0.2 }}
 pitch = {{ value = "12 mm", vary = 0.15 }}
 [hairs]
 per_lock = {PER_LOCK}
-radius = "1.5 mm"
+lock_radius = "1.5 mm"
 """
 
 
@@ -169,7 +169,7 @@ def test_straight_hair_without_a_head_becomes_a_lock_each(tmp_path, name):
 def test_finished_hair_is_simulated_on_its_moving_head(known, tmp_path):
     folder, _, _ = known
     convert(folder / "hair.usdc", tmp_path / "plain.usdc", only="hairs")
-    (tmp_path / "a.shot.toml").write_text('ringlet = 1\ngroom = "plain.usdc"\nframes = [1, 2]\n[rest]\nmode = "none"\n')
+    (tmp_path / "a.shot.toml").write_text('ringlet = 2\ngroom = "plain.usdc"\nframes = [1, 2]\n[rest]\nmode = "none"\n')
     assert run("sim", tmp_path / "a.shot.toml", "-o", tmp_path / "a.usdc", "--locks", 9).exit_code == 0
     locks = read_groom(tmp_path / "a.usdc").locks
     assert len(locks) <= 9
@@ -195,7 +195,7 @@ def test_wrong_input_is_refused_and_leaves_nothing(known, tmp_path):
     with pytest.raises(UserError, match="holds no offsets"):
         edit(far, "", "") if far.exists() else None
         (tmp_path / "b.recipe.toml").write_text(
-            f'ringlet = 1\n[scalp]\nfile = "{folder / "head.usda"}"\n[hairs]\nfile = "{folder / "hair.usdc"}"\n'
+            f'ringlet = 2\n[scalp]\nfile = "{folder / "head.usda"}"\n[hairs]\nfile = "{folder / "hair.usdc"}"\n'
         )
         build_groom(tmp_path / "b.recipe.toml")
 
@@ -214,6 +214,6 @@ def test_adopted_hairs_that_do_not_fit_the_groom_are_refused(known):
 def test_adopted_hairs_are_refused_among_several_grooms(known, tmp_path):
     folder, _, _ = known
     several = folder / "several.recipe.toml"
-    several.write_text('ringlet = 1\n[grooms.hair]\nextends = "adopted.recipe.toml"\n')
+    several.write_text('ringlet = 2\n[grooms.hair]\nextends = "adopted.recipe.toml"\n')
     refused(run("groom", several, "-o", tmp_path / "g.usdc"), "grooms.hair.hairs.file: adopted hairs cannot be one of")
     assert not (tmp_path / "g.usdc").exists()

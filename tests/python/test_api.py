@@ -40,7 +40,7 @@ def test_progress_ends_at_its_total(tmp_path):
     steps = []
     ringlet.build_groom(write_example(tmp_path) / "small.recipe.toml", progress=lambda *step: steps.append(step))
     ended = {stage: done == total for stage, done, total in steps}
-    assert {"guides", "locks", "curl", "clean"} <= ended.keys() and all(ended.values())
+    assert {"guides", "locks", "curl", "collide"} <= ended.keys() and all(ended.values())
 
 
 def test_a_groom_in_memory_reports_what_a_simulation_lacks(tmp_path):

@@ -81,7 +81,7 @@ def test_every_value_of_a_recipe_is_a_setting_with_its_bounds(schema):
     places = {place[0] for place in settings}
     assert set(numbers) <= places
     assert {"braid", "clump", "frizz", "tie"} <= schema.operators().keys()
-    assert [one for one in schema.operators()["clump"][1] if one.place == ("amount", "value")]
+    assert [one for one in schema.operators()["clump"][1] if one.place == ("tightness", "value")]
 
 
 def test_the_pigments_of_cycles_absorb_as_those_of_ringlet():
@@ -148,6 +148,6 @@ def test_sculpted_guides_maps_operators_and_variants(act):
     assert "guides.usdc" not in found["text"]  # the panel says where guides come from
     assert found["grown"] == pytest.approx(found["before"], abs=1e-6)
     assert found["operators"] == ["frizz"] and found["removed"] == []
-    assert found["amount"] == pytest.approx(0.004) and found["map"] == ""
+    assert found["magnitude"] == pytest.approx(0.004) and found["map"] == ""
     variant = ringlet.read_groom(found["written"], variant="Kim")
     assert len(variant.locks) == 24

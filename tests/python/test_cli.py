@@ -14,7 +14,7 @@ from ringlet.cli.progress import shown_progress
 
 import ringlet
 
-COMMANDS = ["demo", "groom", "edit", "check", "loft", "sim", "wedge", "hair", "picture", "validate", "bench", "schema"]
+COMMANDS = ["demo", "groom", "edit", "check", "loft", "sim", "wedge", "hair", "render", "validate", "bench", "schema"]
 
 
 @pytest.mark.parametrize("command", COMMANDS)

@@ -31,7 +31,7 @@ def test_files_without_hair_are_refused_before_the_review_server_starts(copy):
         (["sim", "small.shot.toml", "-o", "out.obj"], ".usdc, .usd or .usda"),
         (["sim", "small.shot.toml", "--contacts", "out.obj"], ".usdc, .usd or .usda"),
         (["hair", "groom.usdc", "-o", "out.abc"], ".usdc, .usd or .usda"),
-        (["picture", "hair.usdc", "-o", "out.gif"], "must end in .png, .jpg, .jpeg or .exr"),
+        (["render", "hair.usdc", "-o", "out.gif"], "must end in .png, .jpg, .jpeg or .exr"),
         (["check", "small.recipe.toml", "--fix", "-o", "out.obj"], ".usdc, .usd or .usda"),
     ],
 )
@@ -53,7 +53,7 @@ def test_an_output_format_is_refused_before_the_first_stage(copy, monkeypatch, c
         ("width = 1.0", "width = nan", ["curl.width", "nan"]),
         ("points = 40", "points = 'many'", ["locks.points", "many"]),
         ("points = 40", "points = 4", ["points"]),
-        ("ringlet = 1", "ringlet = 2", ["ringlet", "2"]),
+        ("ringlet = 2", "ringlet = 3", ["ringlet", "2"]),
         ("[scalp]", "[scalp", ["small.recipe.toml", "TOML", "line"]),
         ('file = "head.usda"', 'file = "had.usda"', ["had.usda"]),
         ('region = "scalp"', 'region = "sclap"', ["sclap", "scalp"]),
@@ -248,12 +248,12 @@ def test_a_recipe_in_place_of_a_shot_is_refused_and_vice_versa(copy, monkeypatch
         ["hair", "NONE"],
         ["hair", "GROOM", "--cache", "GROOM"],
         ["hair", "GROOM", "--cache", "CACHE", "--frames", "80:90"],
-        ["picture", "NONE"],
-        ["picture", "HAIR", "--view", "below"],
-        ["picture", "HAIR", "--frame", "80"],
-        ["picture", "HAIR", "--frame", "nan"],
-        ["picture", "HAIR", "--color", "colour"],
-        ["picture", "HAIR", "--sheet", "--frames", "80:90"],
+        ["render", "NONE"],
+        ["render", "HAIR", "--view", "below"],
+        ["render", "HAIR", "--frame", "80"],
+        ["render", "HAIR", "--frame", "nan"],
+        ["render", "HAIR", "--color", "colour"],
+        ["render", "HAIR", "--sheet", "--frames", "80:90"],
     ],
 )
 def test_a_file_of_the_wrong_kind_is_refused(pipeline, tmp_path, arguments):
@@ -265,6 +265,6 @@ def test_a_file_of_the_wrong_kind_is_refused(pipeline, tmp_path, arguments):
         "HAIR": pipeline / "hair.usdc",
         "NONE": tmp_path / "none.usdc",
     }
-    output = tmp_path / ("out.png" if arguments[0] == "picture" else "out.usdc")
+    output = tmp_path / ("out.png" if arguments[0] == "render" else "out.usdc")
     refused(run(*[files.get(argument, argument) for argument in arguments], "-o", output))
     assert list(tmp_path.iterdir()) == []

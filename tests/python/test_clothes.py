@@ -15,7 +15,8 @@ from ringlet.groom import make_groom, parse_recipe
 CHILD = Path(__file__).parents[2] / "examples" / "child" / "head.usdc"
 MARGIN = 0.002  # that locks keep [m]
 HANGING = (
-    "ringlet = 1\n[scalp]\nregion = 'scalp'\n[guides]\ncount = 40\nlength = 25\nlift = 0.2\ndroop = 4\nwhorl = false\n"
+    "ringlet = 2\n[scalp]\nregion = 'scalp'\n[guides]\ncount = 40\nlength = 25\nlift = 0.2\ngravity_bend = 4\n"
+    "whorl = false\n"
     "[locks]\ncount = 80\npoints = 120\n"
 )
 

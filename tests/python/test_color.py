@@ -38,7 +38,7 @@ from test_picture import tuft
 from ringlet.groom import HairMemory, lay_hairs, make_groom, make_hairs, parse_recipe
 
 RECIPE = """
-ringlet = 1
+ringlet = 2
 [scalp]
 region = "scalp"
 [guides]

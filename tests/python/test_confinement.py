@@ -21,7 +21,7 @@ def project(tmp_path) -> Path:
     return write_example(tmp_path / "project")
 
 
-def add_line(file: Path, line: str, below: str = "ringlet = 1") -> Path:
+def add_line(file: Path, line: str, below: str = "ringlet = 2") -> Path:
     file.write_text(file.read_text().replace(below, f"{below}\n{line}", 1))
     return file
 
@@ -89,7 +89,7 @@ def deny(**_):
 # Bounded input
 
 
-@pytest.mark.parametrize("text", ["ringlet = 1\na = " + "[" * 100_000, "ringlet = 1\nseed = " + "9" * 5000])
+@pytest.mark.parametrize("text", ["ringlet = 2\na = " + "[" * 100_000, "ringlet = 2\nseed = " + "9" * 5000])
 @pytest.mark.parametrize("command", ["groom", "sim"])
 def test_unbounded_nesting_and_digits_are_refused(tmp_path, command, text):
     (tmp_path / "deep.toml").write_text(text)
@@ -140,8 +140,8 @@ def test_every_number_in_a_recipe_and_a_shot_has_finite_bounds(kind):
 @pytest.mark.parametrize(("command", "file"), [("groom", "small.recipe.toml"), ("sim", "small.shot.toml")])
 def test_a_later_format_is_refused_with_a_remedy(project, command, file):
     path = project / file
-    path.write_text(path.read_text().replace("ringlet = 1", "ringlet = 2"))
-    refused(run(command, path, "-o", project / "out.usdc"), file, "ringlet is 2", "update it")
+    path.write_text(path.read_text().replace("ringlet = 2", "ringlet = 3"))
+    refused(run(command, path, "-o", project / "out.usdc"), file, "ringlet is 3", "update it")
 
 
 def test_a_removed_setting_is_refused_with_its_replacement(project):

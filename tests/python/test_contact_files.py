@@ -73,12 +73,12 @@ def test_a_picture_shows_contacts_and_initial_overlaps(touched, tmp_path):
     for what in ("force", "gap", "start"):
         path = tmp_path / f"{what}.png"
         small = ("--samples", 2, "--width", 180, "--height", 200)
-        result = run("picture", touched, "--contacts", what, "--frame", 4, "-o", path, *small)
+        result = run("render", touched, "--contacts", what, "--frame", 4, "-o", path, *small)
         assert result.exit_code == 0, result.output
         pictures[what] = path.read_bytes()
     assert len(set(pictures.values())) == 3
-    refused(run("picture", touched, "--contacts", "forse", "-o", tmp_path / "a.png"), "forse", "did you mean 'force'?")
-    refused(run("picture", touched, "--contacts", "gap", "--frame", 40, "-o", tmp_path / "a.png"), "frame 40", "1 to 4")
+    refused(run("render", touched, "--contacts", "forse", "-o", tmp_path / "a.png"), "forse", "did you mean 'force'?")
+    refused(run("render", touched, "--contacts", "gap", "--frame", 40, "-o", tmp_path / "a.png"), "frame 40", "1 to 4")
 
 
 def test_a_picture_of_contacts_makes_only_cloth_transparent(touched, tmp_path, monkeypatch):
@@ -93,7 +93,7 @@ def test_a_picture_of_contacts_makes_only_cloth_transparent(touched, tmp_path, m
 def test_a_stage_without_contacts_is_refused(cloth_example, tmp_path):
     assert sim(cloth_example).exit_code == 0
     refused(
-        run("picture", cloth_example / "cache.usdc", "--contacts", "gap", "-o", tmp_path / "a.png"),
+        run("render", cloth_example / "cache.usdc", "--contacts", "gap", "-o", tmp_path / "a.png"),
         "no contacts",
         "--contacts",
     )

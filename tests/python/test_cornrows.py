@@ -17,7 +17,7 @@ POINTS, HEIGHT = 260, 0.005
 BALL = ball(rings=40)
 SURFACE = Scalp(BALL, "scalp")
 RECIPE = """
-ringlet = 1
+ringlet = 2
 seed = {seed}
 [scalp]
 region = 'scalp'
@@ -128,10 +128,10 @@ def test_hair_of_a_row_lies_flat_towards_its_braid_and_leaves_the_parting_free(m
     assert roots[-1] > 0.1 and np.diff(roots).max() < 0.02  # all along the row
 
 
-def test_a_cornrow_is_nailed_along_its_row_and_its_tail_is_free(made):
-    nail = made.locks.point["nail"].reshape(-1, POINTS)
-    assert (nail[on_scalp(made.locks, before=-1.0)] == 1.0).all() and (nail[:, -25:] == 0.0).all()
-    assert np.all(np.diff(nail, axis=1) <= 0.0)
+def test_a_cornrow_is_pinned_along_its_row_and_its_tail_is_free(made):
+    pin = made.locks.point["pin"].reshape(-1, POINTS)
+    assert (pin[on_scalp(made.locks, before=-1.0)] == 1.0).all() and (pin[:, -25:] == 0.0).all()
+    assert np.all(np.diff(pin, axis=1) <= 0.0)
 
 
 def test_a_row_that_a_mask_takes_away_changes_no_other(made):

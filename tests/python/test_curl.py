@@ -21,7 +21,7 @@ def straight(count=3, points=8, apart=0.02):
 def curled(settings, guides=None, points=240, plain=PLAIN, **options):
     """Locks of drawn guides with ``[curl]`` settings, shape (count, points, 3)."""
     kept = [line for line in plain.splitlines() if line.split(" ")[0] not in settings]
-    recipe = "ringlet = 1\n[guides]\nfile='g.usda'\n[locks]\npoints = {}\n[clean]\nmargin = 0\n[curl]\n{}\n{}".format(
+    recipe = "ringlet = 2\n[guides]\nfile='g.usda'\n[locks]\npoints = {}\n[collide]\nmargin = 0\n[curl]\n{}\n{}".format(
         points, "\n".join(kept), settings
     )
     locks = make_groom(parse_recipe(recipe), sheet(), drawn_guides=guides or straight(), **options).locks
@@ -61,7 +61,9 @@ def test_the_width_is_painted_set_in_a_region_and_overridden_for_a_lock():
     scalp.maps["paint"] = np.where(scalp.points[scalp.triangles][:, :, 0] > 0.03, 0.5, 1.0)
     guides = straight(5, apart=0.03)
     width = "curls = 6\nwidth = { value = 1, map = 'paint', region = { left = 0.6 }, lock = { 7 = 0.2 } }"
-    recipe = f"ringlet = 1\n[guides]\nfile='g.usda'\n[locks]\npoints = 240\n[clean]\nmargin = 0\n[curl]\n{PLAIN}{width}"
+    recipe = (
+        f"ringlet = 2\n[guides]\nfile='g.usda'\n[locks]\npoints = 240\n[collide]\nmargin = 0\n[curl]\n{PLAIN}{width}"
+    )
     locks = make_groom(parse_recipe(recipe), scalp, drawn_guides=guides).locks.points.reshape(5, 240, 3)
     off = locks - guides.roots[:, None]  # the fourth is a fifth between the painted values 1 and 0.5
     assert np.allclose(np.hypot(off[:, -1, 0], off[:, -1, 2]), [0.003, 0.003, 0.001, 0.0045, 0.0025], rtol=1e-3)
@@ -128,23 +130,23 @@ def test_the_phase_turns_the_curl():
 
 def phases(coherence):
     recipe = f"""
-ringlet = 1
+ringlet = 2
 [scalp]
 region = "scalp"
 [guides]
 count = 400
 lift = 1
-droop = 0
+gravity_bend = 0
 [locks]
 points = 60
-[clean]
+[collide]
 margin = 0
 [curl]
 curls = 3
 start = 0
 right_handed = 1
-phase_alike = {coherence}
-phase_size = 4
+phase_coherence = {coherence}
+phase_wavelength = 4
 """
     groom = make_groom(parse_recipe(recipe), ball())
     roots, points = groom.guides.roots, groom.locks.points.reshape(400, 60, 3)
@@ -215,7 +217,7 @@ def test_locked_neighbours_align_phase_and_hand_towards_the_tip():
     guides = straight(9, apart=0.004)
     loose = "curls = 8\nwidth = 1\nphase_spread = 1\nright_handed = 0.5\n"
     alone = curled(loose, guides)
-    locked = curled(loose + "phase_lock = { size = 40, length = 4, cohesion = 0 }", guides)
+    locked = curled(loose + "phase_groups = { size = 40, length = 4, cohesion = 0 }", guides)
 
     def agreement(locks, height):
         off = locks - guides.roots[:, None]
@@ -231,7 +233,7 @@ def test_locked_neighbours_align_phase_and_hand_towards_the_tip():
 
 def test_cohesion_draws_locked_neighbours_together():
     guides = straight(9, apart=0.004)
-    settings = "curls = 8\nwidth = 1\nphase_spread = 1\nphase_lock = {{ size = 40, length = 4, cohesion = {} }}"
+    settings = "curls = 8\nwidth = 1\nphase_spread = 1\nphase_groups = {{ size = 40, length = 4, cohesion = {} }}"
     apart, together = (curled(settings.format(cohesion), guides)[:, -1] for cohesion in (0, 1))
     assert np.ptp(apart[:, 0]) > 0.025
     assert np.ptp(together, axis=0).max() < 1e-6
@@ -305,7 +307,7 @@ RANGES = {
     "skips": (0.0, 3.0),
     "phase": (-180.0, 180.0),
     "phase_spread": (0.0, 1.0),
-    "phase_alike": (0.0, 1.0),
+    "phase_coherence": (0.0, 1.0),
     "irregularity": (0.0, 0.9),
     "flatness": (0.0, 1.0),
     "kink": (0.0, 1.0),
@@ -325,9 +327,9 @@ def test_locks_change_continuously_with_every_value(name, keep):
         "skips": 1,
         "kink": 0.2,
         "wave": 0.5,
-        "phase_alike": 0.5,
+        "phase_coherence": 0.5,
         "keep": f"'{keep}'",
-        "phase_lock": "{ size = 4, length = 4 }",
+        "phase_groups": "{ size = 4, length = 4 }",
     }
     guides = straight(40, apart=0.0045)
 
@@ -354,8 +356,8 @@ def test_phases_are_independent_of_the_resampling_of_guides():
     coarse = curled(settings, guides, points=120)
     assert np.linalg.norm(curled(settings, guides, points=239)[:, ::2] - coarse, axis=2).max() < 2e-4
     more = (
-        "ringlet = 1\n[guides]\nfile='g.usda'\n[locks]\npoints = 120\nshape_points = {}\n[clean]\nmargin = 0\n[curl]\n"
-        + settings
+        "ringlet = 2\n[guides]\nfile='g.usda'\n[locks]\npoints = 120\nshape_points = {}\n"
+        "[collide]\nmargin = 0\n[curl]\n" + settings
     )
     made = [
         make_groom(parse_recipe(more.format(points)), sheet(), drawn_guides=guides).locks.points for points in (30, 60)
@@ -364,7 +366,7 @@ def test_phases_are_independent_of_the_resampling_of_guides():
 
 
 def test_adding_a_guide_changes_no_other_lock():
-    settings = "curls = 6\nphase_spread = 1\nphase_alike = 0.5\nswitchbacks = 1\nskips = 1\nirregularity = 0.4"
+    settings = "curls = 6\nphase_spread = 1\nphase_coherence = 0.5\nswitchbacks = 1\nskips = 1\nirregularity = 0.4"
     few = curled(settings, straight(5))
     more = Curves.from_list(
         [straight(5)[i] for i in range(5)] + [straight(1)[0] + [0.0, 0.0, 0.03]], ids=[5, 6, 7, 8, 9, 77]

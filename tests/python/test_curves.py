@@ -17,12 +17,12 @@ def helix(radius=0.01, pitch=0.02, turns=3.0, points=400):
     [
         ({}, {"width": [1e-4, np.nan, 0, 0]}, "here: width is nan on curve 7; must be at least 0 and finite"),
         ({"width": [1e-4, -1.0]}, {}, "here: width is -1 on curve 9; must be at least 0 and finite"),
-        ({}, {"nail": [0, 0, 1, 1e30]}, "here: nail is 1e\\+30 on curve 9; must be from 0 to 1"),
-        ({}, {"nail": [0, -5, 1, 0]}, "here: nail is -5 on curve 7; must be from 0 to 1"),
-        ({}, {"nail": [0, 0, np.nan, 0]}, "here: nail is nan on curve 9; must be from 0 to 1"),
+        ({}, {"pin": [0, 0, 1, 1e30]}, "here: pin is 1e\\+30 on curve 9; must be from 0 to 1"),
+        ({}, {"pin": [0, -5, 1, 0]}, "here: pin is -5 on curve 7; must be from 0 to 1"),
+        ({}, {"pin": [0, 0, np.nan, 0]}, "here: pin is nan on curve 9; must be from 0 to 1"),
     ],
 )
-def test_widths_and_nails_out_of_range_are_refused(curve, point, message):
+def test_widths_and_pins_out_of_range_are_refused(curve, point, message):
     curves = Curves.from_list([np.eye(3)[:2], np.eye(3)[1:]], ids=[7, 9])
     curves.curve |= {name: np.array(values) for name, values in curve.items()}
     curves.point |= {name: np.array(values) for name, values in point.items()}

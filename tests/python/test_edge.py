@@ -11,7 +11,7 @@ from small_example import RADIUS
 import ringlet
 
 LASHES = """
-ringlet = 1
+ringlet = 2
 [scalp]
 file = "head.usda"
 
@@ -27,19 +27,19 @@ points = [[2, 0, 8.8], [4, 1, 8], [6, 0, 6.7]]
 count = 40
 length = 1
 lift = 0.2
-droop = 0
+gravity_bend = 0
 flow = [0, 1, 0]
 
 [locks]
 count = 120
 points = 8
 
-[clean]
+[collide]
 margin = 0
 """
 
 AROUND = """
-ringlet = 1
+ringlet = 2
 [scalp]
 file = "head.usda"
 [scalp.edge]

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 from ringlet.data.groom import STRAND_RADIUS
-from ringlet.groom.nails import NAIL
 from ringlet.groom.operators import Context
 from ringlet.groom.operators.edges import Edge
+from ringlet.groom.pins import PIN
 from ringlet.groom.scalp import Scalp
 from ringlet.groom.shares import LAID
 from shapes import ball
@@ -18,14 +18,14 @@ CURL = "[curl]\npreset = '3C'\n"
 def groom(settings="", more=CURL, count=900, edges=True, sections=""):
     shape = f"[[shape]]\nop = 'edges'\n{settings}\n" if edges else ""
     text = f"""
-ringlet = 1
+ringlet = 2
 [scalp]
 region = 'scalp'
 [guides]
 count = 30
 length = 5
 lift = 1
-droop = 0
+gravity_bend = 0
 [locks]
 count = {count}
 points = 120
@@ -52,7 +52,7 @@ def above(points):
 
 
 def test_laid_locks_lie_on_the_skin_under_their_height_and_never_through_it():
-    made = groom("within = '12 mm'\nwidth = '0.8 mm'\nheight = '1.5 mm'\nlength = 3\ngather = 0")
+    made = groom("within = '12 mm'\nwidth = '0.8 mm'\nheight = '1.5 mm'\nlength = 3\ntightness = 0")
     laid = is_laid(made)
     root_height = made.locks.roots[:, 1]  # above the border, which is the equator
     assert laid.sum() > 20 and root_height[laid].max() < 0.012
@@ -68,18 +68,18 @@ def test_laid_locks_lie_on_the_skin_under_their_height_and_never_through_it():
     assert above(of_laid)[:, 40:].min() > -2e-4 and above(of_laid).max() < 0.0022
 
 
-def test_neither_curl_nor_clean_moves_them_and_a_shot_nails_them():
+def test_neither_curl_nor_clean_moves_them_and_a_shot_pins_them():
     plain, curled = groom(more=""), groom()
     laid = is_laid(plain)
     np.testing.assert_allclose(grid(plain)[laid], grid(curled)[laid], atol=1e-6)
     assert np.abs(grid(plain)[~laid] - grid(curled)[~laid]).max() > 1e-3
-    nails = curled.locks.point[NAIL].reshape(len(laid), -1)
-    assert (nails[laid] == 1.0).all() and not nails[~laid].any()
+    pins = curled.locks.point[PIN].reshape(len(laid), -1)
+    assert (pins[laid] == 1.0).all() and not pins[~laid].any()
 
 
 def test_locks_of_a_swoop_come_together_and_turn_away_from_the_middle():
-    made = groom("gather = 1\nsize = 3\nlength = 2.5\ndirection = 30\nswoop = 60", count=3000)
-    loose = groom("gather = 0\nsize = 3\nlength = 2.5\ndirection = 30\nswoop = 60", count=3000)
+    made = groom("tightness = 1\nsize = 3\nlength = 2.5\ndirection = 30\nswoop = 60", count=3000)
+    loose = groom("tightness = 0\nsize = 3\nlength = 2.5\ndirection = 30\nswoop = 60", count=3000)
     laid = is_laid(made)
     tips, spread = grid(made)[laid][:, -1], grid(loose)[laid][:, -1]
     nearest = [np.sort(np.linalg.norm(p[:, None] - p[None], axis=2), axis=1)[:, 1] for p in (tips, spread)]
@@ -94,7 +94,7 @@ def test_locks_of_a_swoop_come_together_and_turn_away_from_the_middle():
 def test_swoops_change_sides_softly():
     surface = Scalp(ball(), "scalp")
     edge = Edge.of(surface)
-    made = groom("alternate = 9\nsize = 1.5\ngather = 0\ndirection = 30\nswoop = 60\nlength = 2.5", count=3000)
+    made = groom("alternate = 9\nsize = 1.5\ntightness = 0\ndirection = 30\nswoop = 60\nlength = 2.5", count=3000)
     roots, tips = grid(made)[is_laid(made)][:, 0], grid(made)[is_laid(made)][:, -1]
     _, side = edge.axes(roots, surface.nearest(roots)[1], surface)
     moved = np.sum((tips - roots) * side, axis=1)

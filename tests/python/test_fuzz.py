@@ -106,4 +106,4 @@ def test_usd_of_any_counts_and_offsets_is_refused_or_read(tmp_path, target, data
 @given(tables=st.dictionaries(st.sampled_from(SETTINGS), values, max_size=5))
 @pytest.mark.parametrize("target", ["recipe", "shot"])
 def test_tables_of_any_values_are_refused_in_one_line_or_accepted(tmp_path, target, tables):
-    try_out(TARGETS[target], to_toml({"ringlet": 1, **tables}).encode("utf-8", "replace"), tmp_path)
+    try_out(TARGETS[target], to_toml({"ringlet": 2, **tables}).encode("utf-8", "replace"), tmp_path)

@@ -38,7 +38,7 @@ def recipe_text(name: str, head: str) -> str:
     recipe = ROOT / STYLES[name]["recipe"]
     tables = load(recipe)[1]
     scalp = f'[scalp]\nfile = "{ROOT}/examples/{head}/head.usdc"\nmesh = "/{head}/skin"\n'
-    return f'ringlet = 1\nextends = "{recipe}"\n{scalp}' + (
+    return f'ringlet = 2\nextends = "{recipe}"\n{scalp}' + (
         f"[locks]\ncount = {LOCKS}\n" if "count" in tables["locks"] else ""
     )
 

@@ -26,7 +26,7 @@ start = 0.5
 
 
 def groom(text=BASE, scalp=None, top="", **options):
-    return make_groom(parse_recipe(f"ringlet = 1\n{top}\n{text}"), scalp or ball(), **options)
+    return make_groom(parse_recipe(f"ringlet = 2\n{top}\n{text}"), scalp or ball(), **options)
 
 
 def tall(count=3, points=8, height=0.08):
@@ -39,7 +39,7 @@ def tall(count=3, points=8, height=0.08):
 
 def drawn(curl, guides=None, locks="points = 120", **options):
     return groom(
-        f"[guides]\nfile='g.usda'\n[locks]\n{locks}\n[clean]\nmargin=0\n{curl}",
+        f"[guides]\nfile='g.usda'\n[locks]\n{locks}\n[collide]\nmargin=0\n{curl}",
         sheet(),
         drawn_guides=guides or tall(),
         **options,
@@ -85,7 +85,7 @@ def test_changing_the_shape_stack_leaves_the_randomness_of_its_other_operators()
 
 
 def test_locks_stay_outside_the_head():
-    lying = BASE.replace("length = 6", "length = 12\nlift = 0\ndroop = 3") + "[clean]\nmargin = '2 mm'\n"
+    lying = BASE.replace("length = 6", "length = 12\nlift = 0\ngravity_bend = 3") + "[collide]\nmargin = '2 mm'\n"
     locks = groom(lying, ball(rings=48)).locks
     height = np.linalg.norm(locks.points.reshape(60, 64, 3), axis=2) - 0.09
     assert height.min() > -0.0001  # facets are up to 0.1 mm below the sphere
@@ -105,7 +105,7 @@ def test_the_curl_begins_at_the_root_and_along_the_shape():
 
 
 def test_loft_raises_locks_and_keeps_their_length():
-    hanging = BASE[: BASE.index("[curl]")].replace("length = 6", "length = 6\ndroop = 2")
+    hanging = BASE[: BASE.index("[curl]")].replace("length = 6", "length = 6\ngravity_bend = 2")
     low, high = groom(hanging), groom(hanging + "[[shape]]\nop='loft'\nup=1\namount=1\n")
     assert high.locks.points[:, 1].mean() > low.locks.points[:, 1].mean() + 0.005
     low, high = (g.locks.lengths() for g in (drawn("[[shape]]\nop='loft'\nup=0"), drawn("")))
@@ -114,7 +114,8 @@ def test_loft_raises_locks_and_keeps_their_length():
 
 def test_clumping_draws_tips_together_and_leaves_roots():
     plain = BASE[: BASE.index("[curl]")]
-    loose, tight = groom(plain), groom(plain + "[[shape]]\nop='clump'\nsize=4\namount={ value = 1, vary = 0 }\n")
+    clumps = "[[shape]]\nop='clump'\nsize=4\ntightness={ value = 1, vary = 0 }\n"
+    loose, tight = groom(plain), groom(plain + clumps)
     tips = lambda g: g.locks.points.reshape(60, 64, 3)[:, -1]  # noqa: E731
     nearest = lambda p: np.sort(np.linalg.norm(p[:, None] - p[None], axis=2), axis=1)[:, 1]  # noqa: E731
     assert np.array_equal(loose.locks.roots, tight.locks.roots)
@@ -122,7 +123,7 @@ def test_clumping_draws_tips_together_and_leaves_roots():
 
 
 def test_a_zone_shortens_the_hair_in_its_direction():
-    zone = BASE.replace("length = 6", "length = 6\nzone = [{ toward = [0, 0, 1], spread = 60, length = 0.5 }]")
+    zone = BASE.replace("length = 6", "length = 6\nzone = [{ toward = [0, 0, 1], angle = 60, length = 0.5 }]")
     plain, zoned = groom().guides, groom(zone).guides
     change = zoned.lengths() / plain.lengths()
     front, back = plain.roots[:, 2].argmax(), plain.roots[:, 2] < 0.0
@@ -132,7 +133,7 @@ def test_a_zone_shortens_the_hair_in_its_direction():
 
 def test_hair_flows_away_from_a_part_line_and_locks_do_not_mix_its_sides():
     flat = BASE[: BASE.index("[curl]")].replace(
-        "count = 20", "count = 150\nlift = 0.1\ndroop = 0\npart = { reach = 20 }"
+        "count = 20", "count = 150\nlift = 0.1\ngravity_bend = 0\npart_line = { falloff = 20 }"
     )
     locks = groom(flat).locks
     away = np.abs(locks.roots[:, 0])
@@ -211,4 +212,4 @@ def test_an_edit_recomputes_only_what_follows_it():
 def test_progress_reports_every_stage_before_and_after():
     steps = []
     groom(progress=lambda *step: steps.append(step))
-    assert steps == [(name, done, 1) for name in ("guides", "locks", "curl", "clean") for done in (0, 1)]
+    assert steps == [(name, done, 1) for name in ("guides", "locks", "curl", "collide") for done in (0, 1)]

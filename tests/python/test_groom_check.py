@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from ringlet.cli.app import app
 from ringlet.data.groom import STRAND_PROFILE, STRAND_RADIUS, Groom
-from ringlet.groom.nails import NAIL
+from ringlet.groom.pins import PIN
 from ringlet.groom.scalp import Scalp
 from shapes import ball, sheet
 from small_example import write_example
@@ -90,7 +90,7 @@ def test_locks_with_a_radius_of_their_own_count_at_it():
     groom.locks.curve[STRAND_PROFILE] = np.array([[1, 0.1, 0.1]] * 4, np.float32)
     places = [row["place"][1] for row in check_groom(groom).summary()["hair"]["worst"]]
     assert places and max(places) < RADIUS + 0.02  # near the roots, where they are thick
-    groom.locks.point[NAIL] = np.ones(len(groom.locks.points), np.float32)
+    groom.locks.point[PIN] = np.ones(len(groom.locks.points), np.float32)
     assert len(check_groom(groom)) == 0
 
 
@@ -147,7 +147,7 @@ def test_repair_removes_every_intersection_with_bounded_displacements(kind):
 
 @pytest.mark.parametrize("margin", [0.0, 0.2])
 def test_locks_that_start_into_the_scalp_keep_their_lengths_and_are_reported(margin):
-    text = "ringlet = 1\n[guides]\nfile = 'g.usda'\n[locks]\ncount = 30\npoints = 20\n[clean]\nmargin = {}\n"
+    text = "ringlet = 2\n[guides]\nfile = 'g.usda'\n[locks]\ncount = 30\npoints = 20\n[collide]\nmargin = {}\n"
     guides = Curves.from_list([[x, 0.0, 0.0] + 0.03 * np.linspace(0, 1, 9)[:, None] * [0, 1, 0] for x in (-0.02, 0.02)])
     inside_out = sheet()
     inside_out.triangles = inside_out.triangles[:, ::-1].copy()
@@ -163,8 +163,8 @@ def test_locks_that_start_into_the_scalp_keep_their_lengths_and_are_reported(mar
 @pytest.mark.parametrize("setting", ["width", "margin"])
 def test_locks_guided_around_the_head_change_continuously(setting):
     recipe = (
-        "ringlet = 1\n[scalp]\nregion = 'scalp'\n[guides]\ncount = 20\nlength = 6\nlift = 0.15\ndroop = 0.6\n"
-        "[locks]\npoints = 160\n[curl]\nwidth = {width}\npitch = 1\n[clean]\nmargin = {margin}\n"
+        "ringlet = 2\n[scalp]\nregion = 'scalp'\n[guides]\ncount = 20\nlength = 6\nlift = 0.15\ngravity_bend = 0.6\n"
+        "[locks]\npoints = 160\n[curl]\nwidth = {width}\npitch = 1\n[collide]\nmargin = {margin}\n"
     )
 
     def at(value):
@@ -190,10 +190,10 @@ def test_the_command_checks_repairs_and_draws(tmp_path):
     recipe = folder / "small.recipe.toml"
     lying = (
         recipe.read_text()
-        .replace("length = 5", "length = 9\nlift = 0\ndroop = 3")
+        .replace("length = 5", "length = 9\nlift = 0\ngravity_bend = 3")
         .replace("points = 40", "points = 99")
     )
-    recipe.write_text(lying + "[clean]\nmargin = 0\n")
+    recipe.write_text(lying + "[collide]\nmargin = 0\n")
     ringlet.write_groom(ringlet.build_groom(recipe), tmp_path / "groom.usdc")
     sunk = ringlet.read_groom(tmp_path / "groom.usdc")
     roots = sunk.locks.roots.copy()
@@ -219,7 +219,7 @@ def test_the_command_checks_repairs_and_draws(tmp_path):
 def test_the_command_says_how_thick_locks_are_with_their_hairs(tmp_path):
     folder = write_example(tmp_path)
     recipe = folder / "small.recipe.toml"
-    wide = "[hairs]\nradius = { value = 0.2, ramp = [[0, 1], [1, 0.5]] }"
+    wide = "[hairs]\nlock_radius = { value = 0.2, ramp = [[0, 1], [1, 0.5]] }"
     recipe.write_text(recipe.read_text().replace("[hairs]", wide))
     assert ringlet.check_groom(recipe)["lock_thickness"] == pytest.approx(0.004)
     said = CliRunner().invoke(app, ["check", str(recipe)]).stdout

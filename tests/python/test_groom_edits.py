@@ -13,7 +13,7 @@ from ringlet import UserError
 from ringlet.groom import parse_recipe
 
 RECIPE = """
-ringlet = 1
+ringlet = 2
 name = "edited"
 edits = "a.edits.toml"
 [scalp]
@@ -25,11 +25,11 @@ length = 6
 [locks]
 count = 12
 points = 64
-[clean]
+[collide]
 margin = 0
 [[shape]]
 op = "scraggle"
-amount = 0.3
+magnitude = 0.3
 [curl]
 width = 0.6
 curls = 4
@@ -75,7 +75,7 @@ def test_an_edit_follows_changes_of_the_recipe(recipe):
     ringlet.edit_lock(recipe, lock, points=before[5] + np.linspace(0, 1, 64)[:, None] * [0.01, 0.0, 0.0])
     for old, new in (
         ("length = 6", "length = 8"),
-        ("amount = 0.3", "amount = 0.6"),
+        ("magnitude = 0.3", "magnitude = 0.6"),
         ("width = 0.6", "width = 0.9"),
         ("curls = 4", "curls = 5"),
         ("points = 64", "points = 96"),
@@ -97,7 +97,7 @@ def test_a_frozen_lock_ignores_changes_of_the_recipe(recipe):
     lock = int(before.locks.ids[3])
     ringlet.edit_lock(recipe, lock)
     change(recipe, "width = 0.6", "width = 1.2")
-    change(recipe, "amount = 0.3", "amount = 1")
+    change(recipe, "magnitude = 0.3", "magnitude = 1")
     after = locks(recipe)
     np.testing.assert_allclose(after[3], before.locks[3], atol=2e-5)
     assert np.abs(after[4] - before.locks[4]).max() > 1e-3
@@ -128,13 +128,13 @@ def test_a_setting_of_one_lock_changes_it_alone_and_overrides_the_recipe(recipe)
     before = locks(recipe)
     lock = int(before.ids[7])
     ringlet.edit_lock(recipe, lock, settings={"curl.width": "12 mm"})
-    ringlet.edit_lock(recipe, lock, settings={"scraggle.amount": 0})
+    ringlet.edit_lock(recipe, lock, settings={"scraggle.magnitude": 0})
     wide = locks(recipe)
     others_stay(before, wide, lock)
     change(recipe, "width = 0.6", "width = 1.2")
     assert np.abs(locks(recipe)[7] - wide[7]).max() < 1e-12  # its own width overrides the recipe
     assert ringlet.list_edits(recipe) == [
-        {"lock": lock, "stage": "groom", "what": ["curl.width", "scraggle.amount"], "there": True}
+        {"lock": lock, "stage": "groom", "what": ["curl.width", "scraggle.magnitude"], "there": True}
     ]
 
 
@@ -192,8 +192,8 @@ def test_a_moved_point_moves_its_neighbourhood_and_keeps_the_rest(recipe):
     before = locks(recipe)
     change(
         recipe,
-        "[clean]",
-        f"[[edit]]\nlock = {before.ids[4]}\nmove = [{{ at = 0.5, by = [1, 0, 0], reach = 0.25 }}]\n[clean]",
+        "[collide]",
+        f"[[edit]]\nlock = {before.ids[4]}\nmove = [{{ at = 0.5, by = [1, 0, 0], falloff = 0.25 }}]\n[collide]",
     )
     moved = np.linalg.norm(locks(recipe)[4] - before[4], axis=1)
     u = np.linspace(0, 1, 64)

@@ -16,7 +16,7 @@ from ringlet.groom import make_groom, parse_recipe
 
 
 def groom(text, scalp=None, **options):
-    return make_groom(parse_recipe(f"ringlet = 1\n[clean]\nmargin = 0\n{text}"), scalp or ball(), **options)
+    return make_groom(parse_recipe(f"ringlet = 2\n[collide]\nmargin = 0\n{text}"), scalp or ball(), **options)
 
 
 def painted(name="thick", mesh=None):
@@ -41,14 +41,14 @@ def test_a_painted_density_sets_the_spacing_and_keeps_the_count(kind):
 
 
 def test_guides_follow_the_flow_where_there_is_no_whorl():
-    text = "[guides]\ncount = 40\nlift = 0\ndroop = 0\nwhorl = false\nflow = [1, 0, 0]\n"
+    text = "[guides]\ncount = 40\nlift = 0\ngravity_bend = 0\nwhorl = false\nflow = [1, 0, 0]\n"
     guides = groom(text, sheet()).guides
     direction = guides.points[guides.offsets[1:] - 1] - guides.roots
     np.testing.assert_allclose(direction, [[0.08, 0.0, 0.0]] * 40, atol=1e-9)
 
 
 @pytest.mark.parametrize(
-    "text", ["whorl = false\nflow = [0, -1, 0]\nlift = 0\ndroop = 0", "lift = 1\ndroop = 2\npoints = 10"]
+    "text", ["whorl = false\nflow = [0, -1, 0]\nlift = 0\ngravity_bend = 0", "lift = 1\ngravity_bend = 2\npoints = 10"]
 )
 def test_guides_have_their_length_where_a_direction_vanishes(text):
     guides = groom(f"[guides]\ncount = 40\nlength = 6\n{text}\n", sheet()).guides
@@ -122,7 +122,7 @@ def test_painted_directions_replace_the_flow_where_they_are_nonzero():
     mesh = sheet()
     right = mesh.points[mesh.triangles].mean(axis=1)[:, 0] > 0.0
     mesh.vectors["comb"] = np.where(right[:, None, None], [0.0, 0.0, 2.0], 0.0) * np.ones((1, 3, 1))
-    plain = "[guides]\ncount = 60\nlift = 0\ndroop = 0\nwhorl = [0, 1, 0]\n"
+    plain = "[guides]\ncount = 60\nlift = 0\ngravity_bend = 0\nwhorl = [0, 1, 0]\n"
     free, combed = groom(plain, mesh).guides, groom(plain + "direction = 'comb'", mesh).guides
     lean = lambda g: (g.points.reshape(60, -1, 3)[:, -1] - g.roots) / g.lengths()[:, None]  # noqa: E731
     on_right = combed.roots[:, 0] > 0.0
@@ -145,8 +145,8 @@ def test_a_zone_may_be_a_region_and_needs_a_place():
 
 def test_guides_turn_away_from_a_drawn_part_line():
     line = "[curves.parting]\npoints = [[3, 0, -9], [3, 0, 9]]\n"
-    text = f"[guides]\ncount = 200\nlift = 0.2\ndroop = 0\nwhorl = [0, 0, 1]\npart = {{ line = 'parting' }}\n{line}"
-    guides = groom(text, sheet()).guides
+    text = "[guides]\ncount = 200\nlift = 0.2\ngravity_bend = 0\nwhorl = [0, 0, 1]\npart_line = { curve = 'parting' }\n"
+    guides = groom(text + line, sheet()).guides
     side = guides.roots[:, 0] - 0.03
     near = (np.abs(side) < 0.015) & (np.abs(guides.roots[:, 2]) < 0.08)
     lean = (guides.points.reshape(200, -1, 3)[:, -1] - guides.roots)[near, 0]
@@ -246,7 +246,7 @@ def test_drawn_guides_of_every_format_have_the_same_positions(tmp_path, suffix, 
         (write_obj if suffix == "obj" else write_hair)(path, lines)
     space = "" if suffix.startswith("usd") else "unit = 'cm'\nup = 'Z'"
     (tmp_path / "a.toml").write_text(
-        f"ringlet = 1\n[scalp]\nfile = 'head.usda'\n[guides]\nfile = '{path.name}'\n{space}\n[locks]\npoints = 30\n"
+        f"ringlet = 2\n[scalp]\nfile = 'head.usda'\n[guides]\nfile = '{path.name}'\n{space}\n[locks]\npoints = 30\n"
     )
     made = ringlet.build_groom(tmp_path / "a.toml")
     np.testing.assert_allclose(made.guides.roots, [line[0] for line in lines], atol=2e-6)
@@ -257,7 +257,7 @@ def test_drawn_guides_of_every_format_have_the_same_positions(tmp_path, suffix, 
 def test_periodic_guides_are_refused(tmp_path):
     write_head(tmp_path / "head.usda")
     write_usd(tmp_path / "ring.usda", lines_on_the_ball(), "cubic", "bspline", "periodic")
-    (tmp_path / "a.toml").write_text("ringlet = 1\n[scalp]\nfile = 'head.usda'\n[guides]\nfile = 'ring.usda'\n")
+    (tmp_path / "a.toml").write_text("ringlet = 2\n[scalp]\nfile = 'head.usda'\n[guides]\nfile = 'ring.usda'\n")
     with pytest.raises(UserError, match="wrap is periodic; must be nonperiodic or pinned"):
         ringlet.build_groom(tmp_path / "a.toml")
 
@@ -268,7 +268,7 @@ def test_an_obj_scalp_has_the_unit_of_the_recipe(tmp_path):
     faces = "".join(f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in mesh.triangles)
     (tmp_path / "head.obj").write_text(points + faces)
     (tmp_path / "a.toml").write_text(
-        "ringlet = 1\n[scalp]\nfile = 'head.obj'\nunit = 'cm'\nup = 'Z'\n[guides]\ncount = 8\n[locks]\ncount = 9\n"
+        "ringlet = 2\n[scalp]\nfile = 'head.obj'\nunit = 'cm'\nup = 'Z'\n[guides]\ncount = 8\n[locks]\ncount = 9\n"
     )
     made = ringlet.build_groom(tmp_path / "a.toml")
     np.testing.assert_allclose(made.scalp.points, mesh.points, atol=1e-7)
@@ -290,7 +290,7 @@ def test_a_texture_restricts_hair_on_an_obj_without_groups(tmp_path):
     Image.fromarray(white).save(tmp_path / "hair.png")
     recipe = tmp_path / "a.toml"
     recipe.write_text(
-        "ringlet = 1\n[scalp]\nfile = 'head.obj'\nunit = 'cm'\n[maps]\nhair = 'hair.png'\n"
+        "ringlet = 2\n[scalp]\nfile = 'head.obj'\nunit = 'cm'\n[maps]\nhair = 'hair.png'\n"
         "[guides]\ncount = 20\ndensity = 'hair'\n[locks]\ncount = 60\ndensity = 'hair'\n"
     )
     made = ringlet.build_groom(recipe)
@@ -326,7 +326,7 @@ def test_textures_and_helper_curves_are_read_from_files_beside_the_recipe(tmp_pa
     Image.fromarray(np.uint8([[0, 255], [102, 51]])).save(tmp_path / "short.png")
     write_obj(tmp_path / "line.obj", [lines_on_the_ball()[0]])
     (tmp_path / "a.toml").write_text(
-        "ringlet = 1\n[scalp]\nfile = 'head.usda'\n[maps]\nshort = 'short.png'\n"
+        "ringlet = 2\n[scalp]\nfile = 'head.usda'\n[maps]\nshort = 'short.png'\n"
         "[curves.line]\nfile = 'line.obj'\nunit = 'cm'\nup = 'Z'\n[guides]\ncount = 6\n[locks]\ncount = 40\n"
         "[[shape]]\nop = 'attract'\ncurve = 'line'\namount = 1\n"
     )

@@ -11,7 +11,7 @@ from ringlet import Curves, UserError
 from ringlet.groom import HairMemory, make_groom, make_hairs, parse_recipe
 
 RECIPE = """
-ringlet = 1
+ringlet = 2
 [scalp]
 region = "scalp"
 [guides]
@@ -63,7 +63,7 @@ def test_hairs_of_other_point_counts_follow_the_lock():
 
 
 def test_roots_of_hairs_are_on_the_scalp_around_their_lock():
-    made = groom("spread = '4 mm'\n")
+    made = groom("root_radius = '4 mm'\n")
     hairs = make_hairs(made).curves
     assert np.isin(hairs.curve["root_triangle"], ball().regions["scalp"]).all()
     at = np.einsum(
@@ -74,7 +74,7 @@ def test_roots_of_hairs_are_on_the_scalp_around_their_lock():
 
 
 def test_hairs_stay_within_the_radius_of_their_lock():
-    hairs = make_hairs(groom("radius = '1 mm'\nstray = 0\nfrizz = 0\nshorter = 0\n")).curves
+    hairs = make_hairs(groom("lock_radius = '1 mm'\nstray = 0\nfrizz = 0\nshorter = 0\n")).curves
     bundle = hairs.points.reshape(40, 12, 60, 3)[:, :, 10:]
     assert np.linalg.norm(bundle - bundle[:, :1], axis=3).max() < 0.00101
 
@@ -90,7 +90,7 @@ def test_a_fraction_selects_some_hairs_and_a_smaller_one_some_of_these():
 
 
 def test_a_fraction_of_the_hairs_keeps_the_thickness_of_locks():
-    made = groom("per_lock = 80\nradius = '1 mm'\nstray = 0\nfrizz = 0\nshorter = 0\n")
+    made = groom("per_lock = 80\nlock_radius = '1 mm'\nstray = 0\nfrizz = 0\nshorter = 0\n")
 
     def radius(fraction):
         hairs = make_hairs(made, fraction=fraction).curves
@@ -131,7 +131,7 @@ def test_single_locks_have_their_own_number_of_hairs():
 
 def section(hairs):
     """Principal coordinates of the hairs in a cross-section of the first lock near its middle [m]."""
-    bundle = make_hairs(groom("radius = '1 mm'\nstray = 0\nfrizz = 0\nshorter = 0\nper_lock = 200\n" + hairs))
+    bundle = make_hairs(groom("lock_radius = '1 mm'\nstray = 0\nfrizz = 0\nshorter = 0\nper_lock = 200\n" + hairs))
     points = bundle.curves.points.reshape(40, 200, 60, 3)[0, :, 20].astype(float)
     off = points - points[0]
     return off @ np.linalg.svd(off)[2].T[:, :2]
@@ -141,7 +141,7 @@ def test_the_cross_section_is_round_or_a_ribbon():
     widths = np.ptp(section(""), axis=0)
     assert widths[1] > 0.9 * widths[0]
     for flatness in (0.7, 1.0):
-        widths = np.ptp(section(f"flatness = {flatness}\n"), axis=0)
+        widths = np.ptp(section(f"lock_flatness = {flatness}\n"), axis=0)
         assert widths[1] == pytest.approx((1.0 - flatness) * widths[0], abs=0.05 * widths[0])
 
 
@@ -151,16 +151,16 @@ def test_hairs_of_a_hollow_lock_are_at_its_rim():
 
 
 def test_a_taper_draws_hairs_together_at_the_tip():
-    settings = "radius = { value = '1 mm', ramp = [[0, 1]] }\nstray = 0\nfrizz = 0\nshorter = 0\n"
+    settings = "lock_radius = { value = '1 mm', ramp = [[0, 1]] }\nstray = 0\nfrizz = 0\nshorter = 0\n"
     for taper, left in ((0.0, 1.0), (0.6, 0.4), (1.0, 0.0)):
-        bundle = make_hairs(groom(settings + f"taper = {taper}\n")).curves.points.reshape(40, 12, 60, 3)
+        bundle = make_hairs(groom(settings + f"lock_taper = {taper}\n")).curves.points.reshape(40, 12, 60, 3)
         away = np.linalg.norm(bundle - bundle[:, :1], axis=3).max(axis=(0, 1))
         assert away[-1] == pytest.approx(left * away[20] / (1.0 - taper * 20 / 59), abs=1e-5)
 
 
 def test_strays_leave_their_lock_and_change_continuously_with_their_fraction():
     def at(stray):
-        return make_hairs(groom(f"stray = {stray}\nstray_radius = '9 mm'\nfrizz = 0\nshorter = 0\n")).curves.points
+        return make_hairs(groom(f"stray = {stray}\nstray_distance = '9 mm'\nfrizz = 0\nshorter = 0\n")).curves.points
 
     tips = at(0.25).reshape(40, 12, 60, 3)[:, 1:, -1] - at(0.0).reshape(40, 12, 60, 3)[:, 1:, -1]
     assert np.mean(np.linalg.norm(tips, axis=2) > 0.001) == pytest.approx(0.25, abs=0.08)
@@ -177,15 +177,15 @@ def two_locks(lean, blend):
         for x, a in zip((-0.004, 0.004), angle, strict=True)
     ]
     text = f"""
-ringlet = 1
+ringlet = 2
 [guides]
 file = "g.usda"
 [locks]
 points = 40
 [hairs]
 per_lock = 50
-spread = "6 mm"
-radius = "1 mm"
+root_radius = "6 mm"
+lock_radius = "1 mm"
 stray = 0
 frizz = 0
 shorter = 0
@@ -222,12 +222,12 @@ def test_cached_hairs_equal_rebuilt_hairs():
     again = make_hairs(wide, memory=memory).curves.points.copy()
     assert memory.hairs is kept
     assert np.array_equal(again, make_hairs(wide).curves.points)
-    make_hairs(groom("spread = '5 mm'\n"), memory=memory)
+    make_hairs(groom("root_radius = '5 mm'\n"), memory=memory)
     assert memory.hairs is not kept
 
 
 def test_hairs_keep_their_curl_when_locks_swing():
-    made = groom("radius = '0.3 mm'\nstray = 0\nfrizz = 0\nshorter = 0\n")
+    made = groom("lock_radius = '0.3 mm'\nstray = 0\nfrizz = 0\nshorter = 0\n")
     hairs = make_hairs(made)
     bent = made.locks.points.copy()
     for i, lock in enumerate(made.locks.points.reshape(40, 60, 3)):  # rotates every lock about its root by 140°
@@ -248,7 +248,7 @@ def test_textures_of_hairs_are_stored_with_the_groom(tmp_path):
     write_head(tmp_path / "head.usdc")
     Image.fromarray(np.array([[255], [64]], np.uint8).repeat(2, axis=1)).save(tmp_path / "thick.png")
     (tmp_path / "a.recipe.toml").write_text(
-        "ringlet = 1\n[scalp]\nfile = 'head.usdc'\nregion = 'scalp'\n[maps]\n1-thick = 'thick.png'\n"
+        "ringlet = 2\n[scalp]\nfile = 'head.usdc'\nregion = 'scalp'\n[maps]\n1-thick = 'thick.png'\n"
         "[guides]\ncount = 10\n[locks]\ncount = 10\n"
         "[hairs]\nper_lock = 2\nwidth = { value = '0.1 mm', map = '1-thick' }\n"
     )
@@ -260,7 +260,7 @@ def test_textures_of_hairs_are_stored_with_the_groom(tmp_path):
 
 
 def test_hairs_stay_on_their_locks_side_of_surfaces():
-    made = groom("radius = 0.004\n")
+    made = groom("lock_radius = 0.004\n")
     hairs = make_hairs(made)
     # Parallel locks, half a millimetre below a roof.
     x, z = np.meshgrid(np.linspace(0.0, 0.1, 60), np.linspace(-0.1, 0.1, 40))
@@ -290,7 +290,7 @@ def test_hairs_stay_on_their_locks_side_of_surfaces():
 
 def test_cached_hairs_follow_a_map_that_was_painted_again():
     def painted(values):
-        made = groom("radius = { value = '3 mm', map = 'thick' }\n")
+        made = groom("lock_radius = { value = '3 mm', map = 'thick' }\n")
         made.scalp.maps["thick"] = np.full((len(made.scalp.triangles), 3), values)
         return made
 

@@ -15,15 +15,15 @@ from ringlet import Curves, UserError, _core
 from ringlet.groom import make_groom, parse_recipe
 
 OPERATORS = {
-    "smooth": "size = 6",
+    "smooth": "wavelength = 6",
     "length": "factor = 0.7",
     "lift": "angle = 25",
     "loft": "amount = 2",
     "bend": "angle = 60",
-    "scraggle": "amount = 1",
-    "noise": "amount = 1",
-    "frizz": "amount = 0.3\nsize = 2",
-    "clump": "amount = { value = 0.8, vary = 0 }\nsize = 3",
+    "scraggle": "magnitude = 1",
+    "noise": "magnitude = 1",
+    "frizz": "magnitude = 0.3\nwavelength = 2",
+    "clump": "tightness = { value = 0.8, vary = 0 }\nsize = 3",
     "part": "amount = 2",
     "tie": "curve = 'tail'",
     "flyaways": "share = 0.5",
@@ -41,18 +41,18 @@ GROWN = """
 count = 30
 length = 7
 lift = 0.5
-droop = 1.5
+gravity_bend = 1.5
 [locks]
 count = {count}
 points = 20
-[clean]
+[collide]
 margin = 0
 """
 
 
 def locks(shape="", count=40, top="", scalp=None):
     """Locks on a ball before curl and cleaning."""
-    text = f"ringlet = 1\n{top}\n[scalp]\nregion = 'scalp'\n{TAIL}{ROUND}{GROWN.format(count=count)}{shape}"
+    text = f"ringlet = 2\n{top}\n[scalp]\nregion = 'scalp'\n{TAIL}{ROUND}{GROWN.format(count=count)}{shape}"
     return uncleaned(parse_recipe(text), scalp or ball())
 
 
@@ -80,7 +80,7 @@ def grid(curves):
 
 def on_sheet(operator, lines, ids=None):
     """An operator applied to polylines on a flat scalp (y = 0)."""
-    recipe = parse_recipe(f"ringlet = 1\n{TAIL}[[shape]]\n{operator}")
+    recipe = parse_recipe(f"ringlet = 2\n{TAIL}[[shape]]\n{operator}")
     surface = Scalp(sheet(), None)
     curves = surface.bind(Curves.from_list([np.asarray(line, float) for line in lines], ids), 1e-3, "test")
     helpers = {name: helper.inline_curve() for name, helper in recipe.curves.items()}
@@ -158,7 +158,7 @@ def test_a_region_mask_acts_in_its_region_with_a_falloff():
     moved = lambda mask: np.abs(  # noqa: E731
         grid(locks(step("lift", f"mask = {mask}"), 200, scalp=scalp)) - grid(plain)
     ).max(axis=(1, 2))
-    hard, soft = moved("{ region = 'front' }"), moved("{ region = 'front', soft = 3 }")
+    hard, soft = moved("{ region = 'front' }"), moved("{ region = 'front', falloff = 3 }")
     behind = plain.roots[:, 2] < -0.012  # the boundary of the region follows facets
     near, far = behind & (plain.roots[:, 2] > -0.02), plain.roots[:, 2] < -0.05
     assert near.sum() > 3 and far.sum() > 3
@@ -171,7 +171,7 @@ def test_lengths_of_expressions_count_in_the_unit_of_the_recipe(unit, half):
     curves = Curves.from_list([upright(x=x) for x in np.linspace(-0.08, 0.08, 9)])
 
     def weights(unit, where):
-        text = f"ringlet = 1\nunit = '{unit}'\n[[shape]]\nop = 'bend'\nmask = {{ where = '{where}' }}\n"
+        text = f"ringlet = 2\nunit = '{unit}'\n[[shape]]\nop = 'bend'\nmask = {{ where = '{where}' }}\n"
         mask = parse_recipe(text).shape[0].mask
         assert not mask.everywhere and mask.where == where
         return mask.weights(curves, sheet(), Random(1, "mask"), "mask")[:, 0]
@@ -218,7 +218,7 @@ def test_invalid_masks_are_refused_in_one_line():
 def test_smooth_removes_short_waves_and_halves_those_of_its_size():
     u = np.linspace(0.0, 0.16, 161)
     wave = lambda length: np.stack([0.0003 * np.sin(2 * np.pi * u / length), u, 0 * u], axis=1)  # noqa: E731
-    smoothed = on_sheet("op = 'smooth'\nsize = 2", [wave(0.005), wave(0.02), wave(0.08), upright(161, 0.16)])
+    smoothed = on_sheet("op = 'smooth'\nwavelength = 2", [wave(0.005), wave(0.02), wave(0.08), upright(161, 0.16)])
     height = lambda k: np.ptp(smoothed[k][40:120, 0]) / 0.0006  # noqa: E731
     assert height(0) < 0.01
     assert height(1) == pytest.approx(0.5, abs=0.03)
@@ -271,7 +271,7 @@ def test_bend_makes_an_arc_of_the_angle_towards_its_direction():
 def test_noise_moves_neighbours_together_and_scraggle_does_not():
     pair = [upright(x=0.02), upright(x=0.0201), upright(x=-0.08)]
     for op, together in (("noise", True), ("scraggle", False)):
-        tips = [curve[-1] for curve in on_sheet(f"op = '{op}'\namount = 2\nsize = 3", pair)]
+        tips = [curve[-1] for curve in on_sheet(f"op = '{op}'\nmagnitude = 2\nwavelength = 3", pair)]
         moved = [tip - curve[-1] for tip, curve in zip(tips, pair, strict=True)]
         assert (np.linalg.norm(moved[0] - moved[1]) < 0.05 * np.linalg.norm(moved[0])) == together
         assert np.linalg.norm(moved[0] - moved[2]) > 0.2 * np.linalg.norm(moved[0])
@@ -279,12 +279,12 @@ def test_noise_moves_neighbours_together_and_scraggle_does_not():
 
 @pytest.mark.parametrize("op", ["scraggle", "noise", "frizz"])
 def test_displacements_keep_lengths_or_say_how_much_longer_locks_become(op):
-    text = f"[[shape]]\nop = '{op}'\namount = 6\nsize = 1.5\n"
+    text = f"[[shape]]\nop = '{op}'\nmagnitude = 6\nwavelength = 1.5\n"
     plain, longer, kept = locks(), locks(text), locks(f"{text}keep = 'length'\n")
     assert longer.lengths().max() > 2.0 * plain.lengths().max()
     np.testing.assert_allclose(kept.lengths(), plain.lengths(), rtol=1e-3)
     assert np.abs(kept.points - plain.points).max() > 2e-3
-    recipe = "ringlet = 1\n[guides]\ncount = 8\n[locks]\ncount = 10\n"
+    recipe = "ringlet = 2\n[guides]\ncount = 8\n[locks]\ncount = 10\n"
     said, silent = (
         make_groom(parse_recipe(f"{recipe}{text}{keep}"), ball()).conflicts for keep in ("", "keep = 'length'")
     )
@@ -293,11 +293,11 @@ def test_displacements_keep_lengths_or_say_how_much_longer_locks_become(op):
 
 
 def test_frizz_is_transverse_and_refused_on_a_coarse_shape():
-    frizzed = on_sheet("op = 'frizz'\namount = 0.2\nsize = 2", [upright(61)])[0]
+    frizzed = on_sheet("op = 'frizz'\nmagnitude = 0.2\nwavelength = 2", [upright(61)])[0]
     np.testing.assert_allclose(frizzed[:, 1], upright(61)[:, 1], atol=1e-12)
     assert 0.0005 < np.abs(frizzed[10:, [0, 2]] - [0.02, 0]).max() < 0.02
-    with pytest.raises(UserError, match=r"frizz.size is 0.002 m, less than the 0.01 m between .* to 101"):
-        on_sheet("op = 'frizz'\nsize = 0.2", [upright()])
+    with pytest.raises(UserError, match=r"frizz.wavelength is 0.002 m, less than the 0.01 m between .* to 101"):
+        on_sheet("op = 'frizz'\nwavelength = 0.2", [upright()])
 
 
 def test_clumps_of_a_second_level_are_within_those_of_the_first():
@@ -305,7 +305,7 @@ def test_clumps_of_a_second_level_are_within_those_of_the_first():
         tips = grid(locks(shape, 300))[:, -1]
         return len(np.unique(np.round(tips, 6), axis=0))
 
-    one = "[[shape]]\nop = 'clump'\nsize = 4\namount = { value = 1, vary = 0 }\n"
+    one = "[[shape]]\nop = 'clump'\nsize = 4\ntightness = { value = 1, vary = 0 }\n"
     loose = kinds("")
     assert kinds(one) < loose / 4
     soft = one.replace("value = 1", "value = 0.5")
@@ -316,7 +316,7 @@ def test_clumps_of_a_second_level_are_within_those_of_the_first():
 
 
 def test_a_plain_amount_clumps_every_lock_as_much():
-    one = "[[shape]]\nop = 'clump'\nsize = 4\namount = {}\n"
+    one = "[[shape]]\nop = 'clump'\nsize = 4\ntightness = {}\n"
     plain, table, varied = (locks(one.format(value)) for value in ("1", "{ value = 1, vary = 0 }", "{ value = 1 }"))
     np.testing.assert_array_equal(plain.points, table.points)
     assert np.abs(varied.points - plain.points).max() > 1e-3
@@ -338,7 +338,7 @@ def test_locks_follow_no_leader_that_leans_to_the_other_side_of_a_parting():
 
 def test_locks_part_at_a_plane_and_at_a_drawn_line():
     beside = [upright(x=0.01), upright(x=-0.01), upright(x=0.09)]
-    for parting in ("", "parting = { line = 'middle' }"):
+    for parting in ("", "part_line = { curve = 'middle' }"):
         text = f"op = 'part'\namount = 3\n{parting}\n[curves.middle]\npoints = [[0, 0, -9], [0, 0, 9]]"
         right, left, far = on_sheet(text, beside)
         assert right[-1, 0] > 0.05 and left[-1, 0] < -0.05
@@ -373,7 +373,7 @@ def test_straightened_locks_point_where_their_tips_were():
 def test_attracted_locks_end_on_the_curve_and_those_out_of_reach_stay():
     line = "[curves.line]\npoints = [[3, 0, 0], [3, 4, 2], [3, 9, 3]]"
     near, far = on_sheet(
-        f"op = 'attract'\ncurve = 'line'\namount = 1\nreach = 5\n{line}", [upright(x=0.03), upright(x=-0.05)]
+        f"op = 'attract'\ncurve = 'line'\namount = 1\nfalloff = 5\n{line}", [upright(x=0.03), upright(x=-0.05)]
     )
     np.testing.assert_allclose(near[-1], [0.03, 0.09, 0.03], atol=1e-9)
     np.testing.assert_allclose(far, upright(x=-0.05), atol=1e-12)
@@ -383,7 +383,7 @@ def test_an_unknown_helper_curve_is_refused_with_the_nearest_name():
     with pytest.raises(UserError, match=r"attract.curve is 'tial', which is no helper curve; did you mean 'tail'"):
         locks("[[shape]]\nop='attract'\ncurve='tial'\n")
     with pytest.raises(UserError, match=r"curves.tail needs either 'points' or a 'file'"):
-        parse_recipe("ringlet = 1\n[curves.tail]\n")
+        parse_recipe("ringlet = 2\n[curves.tail]\n")
 
 
 def test_values_by_region_and_by_lock():
@@ -405,7 +405,7 @@ def test_values_by_region_and_by_lock():
 
 def test_a_recipe_of_all_operators_makes_a_groom():
     text = (
-        "ringlet = 1\n[scalp]\nregion = 'scalp'\n"
+        "ringlet = 2\n[scalp]\nregion = 'scalp'\n"
         + TAIL
         + ROUND
         + GROWN.format(count=40)
@@ -465,14 +465,14 @@ def test_a_shape_of_uneven_points_is_as_smooth():
 
 def test_a_cut_shape_has_no_bends_at_the_points_it_had():
     text = """
-ringlet = 1
+ringlet = 2
 [scalp]
 region = "scalp"
 [guides]
 count = 30
 length = 20
 lift = 0.2
-droop = 3
+gravity_bend = 3
 [locks]
 count = 60
 shape_points = 12
@@ -481,7 +481,7 @@ points = 80
 op = "length"
 factor = 0.7
 cut = true
-[clean]
+[collide]
 margin = 0
 """
     locks = make_groom(parse_recipe(text), ball(0.02)).locks.points.reshape(60, 80, 3)

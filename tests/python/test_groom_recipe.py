@@ -14,7 +14,7 @@ EXAMPLE = Path(__file__).parents[2] / "examples" / "child" / "curls.recipe.toml"
 
 
 def recipe(text):
-    return parse_recipe("ringlet = 1\n" + text, Path("curls.recipe.toml"))
+    return parse_recipe("ringlet = 2\n" + text, Path("curls.recipe.toml"))
 
 
 @pytest.mark.parametrize(
@@ -74,7 +74,7 @@ SETTINGS = [
         ("guides", "Grown"),
         ("locks", "Locks"),
         ("curl", "Curl"),
-        ("clean", "Clean"),
+        ("collide", "Collide"),
         ("hairs", "HairSettings"),
     )
     for setting in schema()["$defs"][model]["properties"]
@@ -102,7 +102,7 @@ def test_any_value_of_a_setting_is_read_or_refused_in_one_line(place, value):
 def test_a_file_without_a_recipe_is_refused(tmp_path):
     with pytest.raises(UserError, match="cannot be read"):
         read_recipe(tmp_path / "none.toml")
-    with pytest.raises(UserError, match="first line must be 'ringlet = 1'"):
+    with pytest.raises(UserError, match="first line must be 'ringlet = 2'"):
         parse_recipe("name = 'x'")
 
 
@@ -132,7 +132,7 @@ def test_a_number_keeps_the_ramp_and_the_variation_of_the_default():
     assert width.ramp == preset["ramp"] and width.vary == preset["vary"]
     table = recipe("[curl]\npreset = '3C'\nwidth = { vary = 0.5 }").curl.width
     assert table.value == pytest.approx(0.009) and table.vary == 0.5 and table.ramp == preset["ramp"]
-    scraggle = recipe("[[shape]]\nop = 'scraggle'\namount = 2").shape[0].amount
+    scraggle = recipe("[[shape]]\nop = 'scraggle'\nmagnitude = 2").shape[0].magnitude
     assert scraggle.along(0.0) == 0.0 and scraggle.along(1.0) == 1.0
 
 

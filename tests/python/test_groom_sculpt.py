@@ -56,7 +56,7 @@ def test_sculpted_guides_keep_their_positions_and_locks_follow(recipe: Path):
 def test_a_cut_guide_keeps_its_fraction_when_the_recipe_lengthens_it(recipe: Path):
     before = ringlet.build_groom(recipe)
     (recipe.parent / "small.edits.toml").write_text(
-        f"ringlet = 1\n[[sculpt]]\nguide = {before.guides.ids[1]}\nlength = 0.5\n"
+        f"ringlet = 2\n[[sculpt]]\nguide = {before.guides.ids[1]}\nlength = 0.5\n"
     )
     assert ringlet.build_groom(recipe).guides.lengths()[1] == pytest.approx(0.5 * before.guides.lengths()[1], rel=0.01)
     recipe.write_text(recipe.read_text().replace("length = 5", "length = 8"))
@@ -84,7 +84,7 @@ def test_unchanged_guides_need_no_sculpt(recipe: Path):
 
 
 def test_a_sculpt_of_a_missing_guide_is_reported(recipe: Path):
-    (recipe.parent / "small.edits.toml").write_text("ringlet = 1\n[[sculpt]]\nguide = 7\nlength = 0.5\n")
+    (recipe.parent / "small.edits.toml").write_text("ringlet = 2\n[[sculpt]]\nguide = 7\nlength = 0.5\n")
     assert "guide 7 was sculpted but is no longer there" in ringlet.build_groom(recipe).conflicts[0]
 
 
@@ -101,6 +101,6 @@ def test_edits_of_locks_keep_sculpts_in_the_file(recipe: Path):
 def test_invalid_sculpts_are_refused(recipe: Path):
     text = recipe.read_text()
     with pytest.raises(UserError, match="changes nothing"):
-        parse_recipe(text, recipe, "ringlet = 1\n[[sculpt]]\nguide = 3\n")
+        parse_recipe(text, recipe, "ringlet = 2\n[[sculpt]]\nguide = 3\n")
     with pytest.raises(UserError, match="holds \\[\\[edit\\]\\] and \\[\\[sculpt\\]\\] tables only"):
-        parse_recipe(text, recipe, "ringlet = 1\n[curl]\nwidth = 1\n")
+        parse_recipe(text, recipe, "ringlet = 2\n[curl]\nwidth = 1\n")

@@ -20,7 +20,7 @@ SECTIONS = "[locks.sections]\npattern = 'rows'\nsize = 40\ngap = 0.3\n"
 def tied(settings, more="", sections="", count=400, points=260, head="op = 'tie'\n", scalp=None):
     """A groom with a tie on the upper half of a ball of 9 cm."""
     text = f"""
-ringlet = 1
+ringlet = 2
 [scalp]
 region = 'scalp'
 [curves.tail]
@@ -35,7 +35,7 @@ points = {points}
 [[shape]]
 {head}{settings}
 {more}
-[clean]
+[collide]
 margin = 0
 """
     return make_groom(parse_recipe(text), scalp or ball())
@@ -141,13 +141,6 @@ def test_a_bun_is_wound_without_overlap_and_its_ends_are_in_it():
     assert tips.max() < away.max() - 0.8 * coil.rope  # in the middle of the last winding
 
 
-def test_the_former_name_of_a_tie_is_read_with_a_note():
-    former = tied("tie = 'tail'", head="op = 'gather'\n")
-    assert any("gather is now called tie" in note for note in former.conflicts)
-    assert not any("gather" in note for note in tied("curve = 'tail'").conflicts)
-    assert np.ptp(former.locks.points[former.locks.offsets[1:] - 1], axis=0).max() > 0.0
-
-
 @pytest.mark.parametrize(
     ("settings", "message"),
     [
@@ -232,7 +225,7 @@ def test_the_rise_of_locks_goes_by_maps_and_ramps():
 
 def test_the_spread_of_a_tail_has_a_ramp():
     made = [
-        tied(f"{TOP}spread = {{ value = 4, ramp = {ramp} }}").locks for ramp in ("[[0, 1], [1, 1]]", "[[0, 0], [1, 1]]")
+        tied(f"{TOP}flare = {{ value = 4, ramp = {ramp} }}").locks for ramp in ("[[0, 1], [1, 1]]", "[[0, 0], [1, 1]]")
     ]
     apart = []
     for locks in made:

@@ -14,7 +14,7 @@ from ringlet import UserError
 from ringlet.groom import parse_recipe, read_recipe
 
 BASE = """
-ringlet = 1
+ringlet = 2
 name = "base"
 unit = "cm"
 [scalp]
@@ -23,19 +23,19 @@ region = "scalp"
 [guides]
 count = 8
 length = { value = 6, vary = 0.1 }
-part = { reach = 3 }
+part_line = { falloff = 3 }
 [locks]
 count = 12
 points = 64
 [[shape]]
 op = "scraggle"
-amount = 0.3
+magnitude = 0.3
 [[shape]]
 op = "loft"
 amount = 0.5
 [[shape]]
 op = "scraggle"
-amount = 0.1
+magnitude = 0.1
 [curl]
 preset = "3B"
 width = 1
@@ -51,7 +51,7 @@ def folder(tmp_path):
 
 def variant(folder, text, name="down.toml"):
     (folder / name).parent.mkdir(exist_ok=True)
-    (folder / name).write_text(f"ringlet = 1\n{text}")
+    (folder / name).write_text(f"ringlet = 2\n{text}")
     return folder / name
 
 
@@ -64,14 +64,14 @@ def test_a_variant_changes_only_its_own_values(folder):
     assert down.curl.width.value == base.curl.width.value
     same = {"name", "guides", "curl", "extends"}
     assert down.model_dump(exclude=same) == base.model_dump(exclude=same)
-    assert down.guides.count == base.guides.count and down.guides.part == base.guides.part
+    assert down.guides.count == base.guides.count and down.guides.part_line == base.guides.part_line
 
 
 def test_operators_are_changed_by_name_and_removed_with_false(folder):
-    text = 'extends = "base.toml"\ncurl = false\n[shape]\nloft = false\n"scraggle 2" = { amount = 0.7 }\n'
+    text = 'extends = "base.toml"\ncurl = false\n[shape]\nloft = false\n"scraggle 2" = { magnitude = 0.7 }\n'
     down = read_recipe(variant(folder, text))
     assert [op.op for op in down.shape] == ["scraggle", "scraggle"]
-    assert [op.amount.value for op in down.shape] == pytest.approx([0.003, 0.007])
+    assert [op.magnitude.value for op in down.shape] == pytest.approx([0.003, 0.007])
     assert down.curl is None
     assert read_recipe(variant(folder, 'extends = "base.toml"\nshape = []\n')).shape == []
 
@@ -165,7 +165,7 @@ def test_variants_are_written_as_usd_variants(folder):
 def test_a_variant_in_another_folder_uses_the_same_head(folder, monkeypatch):
     monkeypatch.chdir(folder)
     (folder / "other").mkdir()
-    (folder / "other/down.toml").write_text("ringlet = 1\nextends = '../base.toml'\n[locks]\npoints = 96\n")
+    (folder / "other/down.toml").write_text("ringlet = 2\nextends = '../base.toml'\n[locks]\npoints = 96\n")
     down = ringlet.build_groom("other/down.toml")
     ringlet.write_groom(ringlet.build_groom("base.toml"), "groom.usdc", variants={"down": down})
     assert len(ringlet.read_groom("groom.usdc", variant="down").locks.points) == 12 * 96
@@ -195,7 +195,7 @@ def test_every_command_accepts_a_variant_and_its_output_records_it(folder):
     down = ringlet.build_groom(variant(folder, 'extends = "base.toml"\n[locks]\npoints = 96\n'))
     file, cache, hair = (folder / f"{name}.usdc" for name in ("groom", "cache", "hair"))
     ringlet.write_groom(ringlet.build_groom(folder / "base.toml"), file, variants={"down": down})
-    (folder / "a.shot.toml").write_text("ringlet = 1\ngroom = 'groom.usdc'\nframes = [1, 2]\npreroll = 0\n")
+    (folder / "a.shot.toml").write_text("ringlet = 2\ngroom = 'groom.usdc'\nframes = [1, 2]\npreroll = 0\n")
     chosen = ["--variant", "down"]
     checked = json.loads(run("check", file, *chosen, "--json"))
     assert checked["points"] == 12 * 96

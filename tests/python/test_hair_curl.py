@@ -8,13 +8,13 @@ from ringlet import UserError
 from ringlet.groom import HairMemory, make_groom, make_hairs, parse_recipe
 
 RECIPE = """
-ringlet = 1
+ringlet = 2
 [scalp]
 [guides]
 count = 6
 length = 12
 lift = 1
-droop = 0
+gravity_bend = 0
 [locks]
 count = 6
 points = 240
@@ -25,7 +25,7 @@ start = 0
 irregularity = 0
 [hairs]
 per_lock = 40
-radius = { value = "1 mm", ramp = [[0, 1], [1, 1]] }
+lock_radius = { value = "1 mm", ramp = [[0, 1], [1, 1]] }
 frizz = 0
 stray = 0
 shorter = 0
@@ -60,11 +60,11 @@ def slips(hairs, made):
     return (phase[:, 1:] - phase[:, :1] + 0.5) % 1.0 - 0.5
 
 
-THIN = "[hairs.families]\ncount = 1\namount = { value = 1, ramp = [[0, 1]] }\nsize = 0\n"
+THIN = "[hairs.families]\ncount = 1\ntightness = { value = 1, ramp = [[0, 1]] }\nradius = 0\n"
 
 
 def test_slips_turn_hairs_about_the_axis_of_the_coil_and_keep_its_radius():
-    made = groom(THIN + "[hairs.curl]\ndrift = 0.1\nslips = 0\nalike = 0\n")
+    made = groom(THIN + "[hairs.curl]\ndrift = 0.1\nslips = 0\ncoherence = 0\n")
     hairs = bundles(made)
     radius = from_axis(hairs, made)[:, :, INNER]
     assert np.allclose(radius, 0.005, atol=4e-4)
@@ -75,7 +75,7 @@ def test_slips_turn_hairs_about_the_axis_of_the_coil_and_keep_its_radius():
 
 
 def test_hairs_that_slip_are_off_by_that_part_of_a_turn():
-    made = groom(THIN + "[hairs.curl]\ndrift = 0\nslips = 0.5\nslip = 0.25\nalike = 0\n")
+    made = groom(THIN + "[hairs.curl]\ndrift = 0\nslips = 0.5\nslip = 0.25\ncoherence = 0\n")
     hairs = bundles(made)
     slip = np.abs(slips(hairs, made))[:, :, 180]
     settled = (slip < 0.02) | (np.abs(slip - 0.25) < 0.03)
@@ -85,13 +85,15 @@ def test_hairs_that_slip_are_off_by_that_part_of_a_turn():
 
 def test_families_share_their_phase():
     four = THIN.replace("count = 1", "count = 4")
-    together, apart = (groom(four + f"[hairs.curl]\ndrift = 0.1\nslips = 0\nalike = {alike}\n") for alike in (1, 0))
+    together, apart = (
+        groom(four + f"[hairs.curl]\ndrift = 0.1\nslips = 0\ncoherence = {coherence}\n") for coherence in (1, 0)
+    )
     assert all(len(np.unique(np.round(lock, 3))) <= 5 for lock in slips(bundles(together), together)[:, :, 170])
     assert all(len(np.unique(np.round(lock, 3))) > 20 for lock in slips(bundles(apart), apart)[:, :, 170])
 
 
 def test_families_draw_hairs_together_as_their_ramp_says():
-    families = "[hairs.families]\ncount = 5\namount = { value = 1, ramp = [[0, 0], [0.5, 1], [1, 0]] }\nsize = 0\n"
+    families = "[hairs.families]\ncount = 5\ntightness = { value = 1, ramp = [[0, 0], [0.5, 1], [1, 0]] }\nradius = 0\n"
     made = groom(families)
     hairs = bundles(made)[:, 1:]
     middle, end = (np.unique(np.round(hairs[0, :, at], 5), axis=0) for at in (120, -1))

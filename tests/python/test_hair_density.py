@@ -10,7 +10,7 @@ from ringlet import Curves, UserError, measure_hairs, write_groom, write_hairs
 from ringlet.groom import cover, hair_count, hair_cover, hairs_per_cm2, make_groom, make_hairs, parse_recipe
 
 DENSE = """
-ringlet = 1
+ringlet = 2
 [scalp]
 region = "scalp"
 [guides]
@@ -56,13 +56,15 @@ def test_a_density_is_painted_and_masked():
 
 
 def test_cover_raises_the_density_until_so_much_of_the_scalp_is_hidden():
-    lying = "spread = '8 mm'\nradius = '8 mm'\n"
+    lying = "root_radius = '8 mm'\nlock_radius = '8 mm'\n"
     thin, thick = dense(lying + "cover = 0.6\n"), dense(lying + "cover = 0.9\n")
     assert np.isclose(hair_cover(thin).seen(), 0.4, atol=0.03) and np.isclose(hair_cover(thick).seen(), 0.1, atol=0.03)
     assert hairs_per_cm2(thin) < 0.7 * hairs_per_cm2(thick)
     unchanged = dense(lying + f"density = {hairs_per_cm2(thick):.0f}\ncover = 0.1\n")
     assert np.isclose(hairs_per_cm2(unchanged), hairs_per_cm2(thick), rtol=0.02)
-    assert any("hairs.cover is 0.999, but at 400" in each for each in dense("cover = 0.999\nradius = 0\n").conflicts)
+    assert any(
+        "hairs.cover is 0.999, but at 400" in each for each in dense("cover = 0.999\nlock_radius = 0\n").conflicts
+    )
 
 
 def test_hairs_are_made_once_to_be_written_and_measured(tmp_path, monkeypatch):
@@ -102,7 +104,7 @@ def test_hairs_that_hang_before_the_scalp_hide_the_part_that_their_optical_depth
 def test_a_density_counts_the_share_of_a_section_for_every_strand(pattern):
     shape = "[[shape]]\nop = 'cornrow'\n" if pattern == "rows" else "[[shape]]\nop = 'braid'\nwidth = 0.8\n"
     recipe = (
-        "ringlet = 1\n[scalp]\nregion = 'scalp'\n[guides]\ncount = 30\nlength = 12\n[locks]\npoints = 200\n"
+        "ringlet = 2\n[scalp]\nregion = 'scalp'\n[guides]\ncount = 30\nlength = 12\n[locks]\npoints = 200\n"
         f"[locks.sections]\npattern = '{pattern}'\nsize = 3\ngap = 0.3\nstrands = 3\n{shape}[hairs]\ndensity = 40\n"
     )
     made = make_groom(parse_recipe(recipe), ball())
@@ -111,7 +113,7 @@ def test_a_density_counts_the_share_of_a_section_for_every_strand(pattern):
 
 
 def test_hair_does_not_crowd_at_the_border_of_the_scalp():
-    height = make_hairs(dense("density = 60\nspread = '12 mm'\n")).curves.roots[:, 1]  # the border is at 0
+    height = make_hairs(dense("density = 60\nroot_radius = '12 mm'\n")).curves.roots[:, 1]  # the border is at 0
     band = 0.002
     in_band = (height < band).mean() / (height < 5 * band).mean()
     assert in_band < 0.35  # 0.2 where hair is even

@@ -24,7 +24,7 @@ COIL = """
 per_lock = 12
 density = 2
 stray = 0.3
-stray_radius = 1
+stray_distance = 1
 
 [hairs.families]
 count = 3
@@ -155,7 +155,7 @@ def test_hairs_on_demand_of_another_groom_are_refused(copy):
     made = hairs(copy, "--on-demand", source="groom.usdc")
     edit(copy / "small.recipe.toml", "count = 8", "count = 9")
     assert run("groom", copy / "small.recipe.toml", "-o", copy / "groom.usdc").exit_code == 0
-    refused(run("picture", made, "-o", copy / "x.png"), "other locks", "make the hairs again")
+    refused(run("render", made, "-o", copy / "x.png"), "other locks", "make the hairs again")
 
 
 @pytest.mark.parametrize("name", ["tip", "profile", "thinning", "frizz", "width"])

@@ -10,8 +10,8 @@ from ringlet.groom import make_groom, parse_recipe
 
 
 def hairline(settings, locks="count = 3000\npoints = 8"):
-    guides = "[guides]\ncount = 30\nlength = 6\nlift = 1\ndroop = 0\n"
-    recipe = f"ringlet = 1\n[scalp]\nregion = 'scalp'\n{guides}[locks]\n{locks}\n{settings}\n[clean]\nmargin = 0\n"
+    guides = "[guides]\ncount = 30\nlength = 6\nlift = 1\ngravity_bend = 0\n"
+    recipe = f"ringlet = 2\n[scalp]\nregion = 'scalp'\n{guides}[locks]\n{locks}\n{settings}\n[collide]\nmargin = 0\n"
     return make_groom(parse_recipe(recipe), ball()).locks
 
 

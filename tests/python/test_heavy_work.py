@@ -17,7 +17,7 @@ from ringlet.shot import Collider, parse_shot
 from ringlet.sim import Obstacle, heavy_work
 from ringlet.sim.work import rotations
 
-SHOT = 'ringlet = 1\ngroom = "a.usdc"\nframes = [1, 4]\n'
+SHOT = 'ringlet = 2\ngroom = "a.usdc"\nframes = [1, 4]\n'
 TRIANGLE = np.array([[0.0, 0.0, 0.0], [0.1, 0.0, 0.0], [0.0, 0.1, 0.0]])
 
 

@@ -16,7 +16,7 @@ from ringlet.host.link import BrokenMessage, RingletProcess, read_message, write
 import ringlet
 
 RECIPE = """
-ringlet = 1
+ringlet = 2
 
 [scalp] # a ball
 file = "head.usdc"
@@ -38,7 +38,7 @@ pitch = 1.5
 per_lock = 3
 """
 SHOT = """
-ringlet = 1
+ringlet = 2
 groom = "a.recipe.toml"
 frames = [1, 4]
 preroll = 0

@@ -33,12 +33,12 @@ def swung_at(rate: int, folder, more: str) -> np.ndarray:
         slide.Set((x, 0, 0), second * rate)
     stage.Save()
     recipe = parse_recipe(
-        f"ringlet = 1\n[scalp]\nfile = 'head{rate}.usda'\nregion = 'scalp'\n[guides]\ncount = 3\nlength = 5\n"
-        "[locks]\npoints = 10\n[clean]\nmargin = 0\n",
+        f"ringlet = 2\n[scalp]\nfile = 'head{rate}.usda'\nregion = 'scalp'\n[guides]\ncount = 3\nlength = 5\n"
+        "[locks]\npoints = 10\n[collide]\nmargin = 0\n",
         folder / "r.recipe.toml",
     )
     shot = parse_shot(
-        f"ringlet = 1\ngroom = 'r.recipe.toml'\nframes = [0, {rate}]\npreroll = 0\n[forces]\ngravity = [3, -9, 0]\n"
+        f"ringlet = 2\ngroom = 'r.recipe.toml'\nframes = [0, {rate}]\npreroll = 0\n[forces]\ngravity = [3, -9, 0]\n"
         f"[solver]\nnewton = 3\nsubsteps = {STEPS // rate}\n{more}",
         folder / "s.shot.toml",
     )
@@ -71,8 +71,8 @@ def played(folder, *, unit: float = 0.01, up: str = "Y", size: float = 1.0):
     for name, value in (("length", 5), ("width", 1.0), ("pitch", 1.5)):
         edit(recipe, f"{name} = {value}", f"{name} = {size * value}")
     start = np.sqrt(1.01 * size**2 - 0.01)  # curls open over hypot(start, 1 mm)
-    edit(recipe, "[curl]", f"[curl]\nstart = {start}\nphase_size = {3 * size}")
-    recipe.write_text(recipe.read_text() + f"[clean]\nmargin = {0.05 * size}\n")
+    edit(recipe, "[curl]", f"[curl]\nstart = {start}\nphase_wavelength = {3 * size}")
+    recipe.write_text(recipe.read_text() + f"[collide]\nmargin = {0.05 * size}\n")
     file.write_text(
         file.read_text()
         + "[solver]\nuntil_converged = true\n[contact]\nradius = 2e-3\n[forces]\nwind = [0.3, 0, 0.2]\n"

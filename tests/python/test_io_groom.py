@@ -191,7 +191,7 @@ def test_drawn_guides_keep_their_names_and_primvars_in_a_round_trip(tmp_path):
         primvar.Set(values)
     stage.Save()
     (tmp_path / "a.recipe.toml").write_text(
-        "ringlet = 1\n[scalp]\nfile = 'head.usdc'\nregion = 'scalp'\n[guides]\nfile = 'drawn.usda'\n"
+        "ringlet = 2\n[scalp]\nfile = 'head.usdc'\nregion = 'scalp'\n[guides]\nfile = 'drawn.usda'\n"
     )
     for path in (tmp_path / "once.usdc", tmp_path / "twice.usdc"):
         once = path.name == "once.usdc"

@@ -84,7 +84,7 @@ def test_polygons_without_area_keep_their_number_of_triangles(ring):
 @pytest.mark.parametrize("name", ["concave_quad", "concave_quad_rot"])
 def test_hair_on_a_concave_face_stands_on_it(name):
     recipe = parse_recipe(
-        'ringlet = 1\nunit = "m"\n[scalp]\nfile = "x.obj"\n[guides]\ncount = 20\nlength = "5 cm"\n'
+        'ringlet = 2\nunit = "m"\n[scalp]\nfile = "x.obj"\n[guides]\ncount = 20\nlength = "5 cm"\n'
         '[locks]\ncount = 40\npoints = 60\n[curl]\nwidth = "1 cm"\npitch = "1.5 cm"\n'
     )
     mesh = read_mesh(CASES / "concave_face" / f"{name}.obj")

@@ -21,7 +21,7 @@ fuzz = 0
 start = 0
 matting = { value = 0, ramp = [[0, 1]] }
 """
-FULL = {"per_lock": 60, "radius": {"value": 0.1, "ramp": [(0.0, 1.0)]}, "frizz": 0.0, "stray": 0.0, "shorter": 0.0}
+FULL = {"per_lock": 60, "lock_radius": {"value": 0.1, "ramp": [(0.0, 1.0)]}, "frizz": 0.0, "stray": 0.0, "shorter": 0.0}
 
 
 ROOT = 2  # points of hairs at their roots

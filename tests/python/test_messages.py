@@ -12,7 +12,7 @@ import ringlet
 from ringlet import io
 from ringlet.groom import parse_recipe
 
-SHOT = 'ringlet = 1\ngroom = "a.usdc"\nframes = [1, 2]\n'
+SHOT = 'ringlet = 2\ngroom = "a.usdc"\nframes = [1, 2]\n'
 
 
 @pytest.mark.parametrize(
@@ -91,7 +91,7 @@ def test_a_wrong_setting_of_a_shot_is_named_as_in_the_file(line, message):
 )
 def test_a_wrong_setting_of_a_recipe_is_named_as_in_the_file(text, message):
     with pytest.raises(ringlet.UserError) as error:
-        parse_recipe(f"ringlet = 1\n{text}")
+        parse_recipe(f"ringlet = 2\n{text}")
     assert message in str(error.value)
     for word in ("constrained", "validation", "should", "Input", "tuple"):
         assert word not in str(error.value)

@@ -113,16 +113,16 @@ def table_with(place: Place, value: Any) -> Any:
 
 
 MODELS = {
-    "recipe": (parse_recipe, {"ringlet": 1}, places(ringlet.schema()["recipe"])),
+    "recipe": (parse_recipe, {"ringlet": 2}, places(ringlet.schema()["recipe"])),
     "shot": (
         parse_shot,
-        {"ringlet": 1, "groom": "a.usdc", "frames": [1, 2], "contact": {}},
+        {"ringlet": 2, "groom": "a.usdc", "frames": [1, 2], "contact": {}},
         places(ringlet.schema()["shot"]),
     ),
 }
 EXTREMES = [0, -1, 1e308, -1e308, 5e-324, math.inf, -math.inf, math.nan, 2**31, 2**63, 10**400, True, False]
 WORDS = ["", "x", "5 mm", "1e999 m", "-3 in", "a\nb", "\u202e\x1b[2J", "\ud7ff" * 300, "None", "../../etc/passwd"]
-TEXTS = ["\ufeff", "ringlet = 1\n[", "ringlet = 1\r\n\x00", "[" * 5000, "a" * 10**6]
+TEXTS = ["\ufeff", "ringlet = 2\n[", "ringlet = 2\r\n\x00", "[" * 5000, "a" * 10**6]
 nonsense = st.recursive(
     st.one_of(st.sampled_from(EXTREMES), st.sampled_from(WORDS), st.floats(), st.integers(), st.text(max_size=9)),
     lambda inner: st.one_of(

@@ -80,7 +80,7 @@ def test_outputs_of_one_command_may_follow_each_other(copy):
 
 
 def test_files_that_are_written_anew_may_be_read_first(copy):
-    recipe = edit(copy / "small.recipe.toml", "ringlet = 1", 'ringlet = 1\nedits = "small.edits.toml"')
+    recipe = edit(copy / "small.recipe.toml", "ringlet = 2", 'ringlet = 2\nedits = "small.edits.toml"')
     lock = int(ringlet.build_groom(recipe).locks.ids[0])
     for value in ("6 mm", "8 mm"):
         assert run("edit", recipe, "--set", f"{lock}:curl.width={value}").exit_code == 0

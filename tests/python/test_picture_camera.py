@@ -175,7 +175,7 @@ def stage(pipeline, tmp_path) -> Path:
 
 
 def test_the_command_takes_a_camera_and_a_lock(stage, tmp_path):
-    common = ["picture", stage, "--width", 24, "--samples", 1, "-o", tmp_path / "a.png"]
+    common = ["render", stage, "--width", 24, "--samples", 1, "-o", tmp_path / "a.png"]
     assert run(*common, "--camera", "/shot/camera", "--frame", 2).exit_code == 0
     assert Image.open(tmp_path / "a.png").size == (24, 16)
     lock = int(io.read_groom(stage).locks.ids[3])
@@ -201,18 +201,18 @@ def test_the_command_takes_a_camera_and_a_lock(stage, tmp_path):
     ],
 )
 def test_wrong_settings_are_refused_by_name(stage, tmp_path, arguments, words):
-    refused(run("picture", stage, "-o", tmp_path / "a.png", *arguments), *words)
+    refused(run("render", stage, "-o", tmp_path / "a.png", *arguments), *words)
     assert [file.name for file in tmp_path.iterdir()] == ["in"]
 
 
 def test_a_jpeg_is_not_transparent_and_an_hdri_must_have_light(stage, tmp_path):
-    refused(run("picture", stage, "-o", tmp_path / "a.jpg", "--background", "transparent"), "JPEG", ".png")
+    refused(run("render", stage, "-o", tmp_path / "a.jpg", "--background", "transparent"), "JPEG", ".png")
     broken, dark = tmp_path / "broken.exr", tmp_path / "dark.exr"
     broken.write_bytes(b"light")
     mitsuba.set_variant("scalar_rgb")
     mitsuba.Bitmap(np.zeros((4, 8, 3), np.float32)).write(str(dark))
     for light, word in ((broken, "cannot be read"), (dark, "none at all")):
-        refused(run("picture", stage, "-o", tmp_path / "a.png", "--width", 16, "--samples", 1, "--light", light), word)
+        refused(run("render", stage, "-o", tmp_path / "a.png", "--width", 16, "--samples", 1, "--light", light), word)
 
 
 def test_settings_of_the_library_are_named():

@@ -64,7 +64,7 @@ def test_readers_refuse_a_folder_and_a_missing_file(tmp_path, name):
 def test_files_that_a_file_names_are_regular_too(tmp_path, make, kind):
     for line in ('extends = "odd"', 'edits = "odd"', 'maps = { a = "odd" }', 'curves = { a = { file = "odd.hair" } }'):
         folder = write_example(tmp_path / line.split()[0])
-        recipe = edit(folder / "small.recipe.toml", "ringlet = 1", f"ringlet = 1\n{line}")
+        recipe = edit(folder / "small.recipe.toml", "ringlet = 2", f"ringlet = 2\n{line}")
         make(folder / "odd")
         make(folder / "odd.hair")
         refused(run("groom", recipe, "-o", folder / "out.usdc"), "odd", f"is no regular file but a {kind}")
@@ -96,7 +96,7 @@ def test_a_file_that_is_too_large_is_refused_before_it_is_read(tmp_path, name):
 
 @pytest.mark.parametrize(
     ("data", "words"),
-    [("ringlet = 1".encode("utf-16"), "UTF-16 text; save it as UTF-8"), (b"\xff\x00", "is no text; give")],
+    [("ringlet = 2".encode("utf-16"), "UTF-16 text; save it as UTF-8"), (b"\xff\x00", "is no text; give")],
 )
 def test_a_text_of_another_encoding_is_refused_with_what_to_do(tmp_path, data, words):
     (tmp_path / "a.recipe.toml").write_bytes(data)

@@ -69,7 +69,7 @@ def flip_faces(file):
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    """A groom with a nail, a painted scalp, a chair and a pinned scarf, after a run that a full disk interrupted."""
+    """A groom with a pin, a painted scalp, a chair and a pinned scarf, after a run that a full disk interrupted."""
     folder = write_example(tmp_path / "project")
     (folder / "chair").mkdir()
     write_chair(folder / "chair/chair.usda")
@@ -77,7 +77,7 @@ def folder(tmp_path, monkeypatch):
     write_wear(folder, lambda mesh: set_subset(mesh, [0, 1]))
     paint(folder / "wear.usda", "/wear/scarf", "pinned", 1.0)
     assert run("groom", folder / "small.recipe.toml", "-o", folder / "groom.usdc").exit_code == 0
-    paint(folder / "groom.usdc", "/groom/locks", "ringlet:nail", 0.2)
+    paint(folder / "groom.usdc", "/groom/locks", "ringlet:pin", 0.2)
     shot = edit(folder / "small.shot.toml", "small.recipe.toml", "groom.usdc")
     shot.write_text(shot.read_text() + SHOT + SCARF.replace("[contact]\n", "") + PIN)
     monkeypatch.setattr(checkpoint, "VERTICES", 1)  # a state after every frame
@@ -106,7 +106,7 @@ def sim(folder, *more):
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        (lambda f: paint(f / "groom.usdc", "/groom/locks", "ringlet:nail", 0.9), "locks.point.nail"),
+        (lambda f: paint(f / "groom.usdc", "/groom/locks", "ringlet:pin", 0.9), "locks.point.pin"),
         (lambda f: paint(f / "head.usda", "/ball/skin", "soft", 0.1), "head.usda has changed"),
         (lambda f: flip_faces(f / "chair/chair.usda"), "chair.usda has changed"),
         (lambda f: paint(f / "wear.usda", "/wear/scarf", "pinned", 0.5), "wear.usda has changed"),
@@ -150,8 +150,8 @@ def test_every_file_that_python_opens_for_a_groom_is_recorded(folder):
     recording = True
     sys.addaudithook(audit)
     recipe = folder / "small.recipe.toml"
-    recipe.write_text(recipe.read_text().replace("ringlet = 1", 'ringlet = 1\nedits = "small.edits.toml"'))
-    (folder / "small.edits.toml").write_text("ringlet = 1\n")
+    recipe.write_text(recipe.read_text().replace("ringlet = 2", 'ringlet = 2\nedits = "small.edits.toml"'))
+    (folder / "small.edits.toml").write_text("ringlet = 2\n")
     with recorded() as read:
         ringlet.load_groom(recipe)
     recording = False

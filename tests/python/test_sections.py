@@ -53,19 +53,19 @@ def test_masks_and_values_go_by_places_in_sections():
         "edge > 5": lambda at: at[EDGE] > 0.005,  # in the unit of the recipe
     }
     for where, held in expected.items():
-        nail = f"[[nail]]\nmask = {{ where = '{where}' }}"
-        locks = groom("size = 30\nstrands = 3", "", "points = 20\nspacing = 8", nail, "unit = 'mm'", length=160).locks
-        nailed = locks.point["nail"].reshape(len(locks), -1)[:, 0] > 0.5
-        assert nailed.any() and not nailed.all()
-        assert np.array_equal(nailed, held(locks.curve)), where
+        pin = f"[[pin]]\nmask = {{ where = '{where}' }}"
+        locks = groom("size = 30\nstrands = 3", "", "points = 20\nspacing = 8", pin, "unit = 'mm'", length=160).locks
+        pinned = locks.point["pin"].reshape(len(locks), -1)[:, 0] > 0.5
+        assert pinned.any() and not pinned.all()
+        assert np.array_equal(pinned, held(locks.curve)), where
     long = groom("strands = 3", "[[shape]]\nop = 'length'\nfactor = { value = 1.5, map = 'u' }").locks
     np.testing.assert_allclose(long.lengths(), 0.16 * np.maximum(1.5 * long.curve["u"], 0.01), rtol=0.02)
 
 
 def test_a_mask_by_sections_is_refused_where_there_are_none():
-    recipe = "ringlet = 1\n[guides]\ncount = 9\n[[nail]]\nmask = { where = 'strand == 1' }"
+    recipe = "ringlet = 2\n[guides]\ncount = 9\n[[pin]]\nmask = { where = 'strand == 1' }"
     with pytest.raises(
-        UserError, match=r"nail\[0\].mask.where has 'strand', which only locks of sections and edges have; add"
+        UserError, match=r"pin\[0\].mask.where has 'strand', which only locks of sections and edges have; add"
     ):
         make_groom(parse_recipe(recipe), sheet())
 
@@ -121,7 +121,7 @@ def arc(plane, angle):
 
 def drawn(*lines, locks="points = 20", sections="strands = 1"):
     recipe = parse_recipe(
-        text(f"pattern = 'drawn'\npartings = 'p'\n{sections}", locks=locks, region="region = 'scalp'")
+        text(f"pattern = 'drawn'\npart_lines = 'p'\n{sections}", locks=locks, region="region = 'scalp'")
     )
     return make_groom(recipe, ball(), helpers={"p": Curves.from_list(list(lines))}).locks
 
@@ -147,5 +147,5 @@ def test_loose_hair_leaves_drawn_partings_free():
 
 
 def test_drawn_sections_without_partings_are_refused():
-    with pytest.raises(UserError, match="needs both pattern = 'drawn' and 'partings'"):
+    with pytest.raises(UserError, match="needs both pattern = 'drawn' and 'part_lines'"):
         parse_recipe(text("pattern = 'drawn'"))

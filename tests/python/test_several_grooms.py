@@ -23,7 +23,7 @@ from ringlet import io
 from ringlet.groom import grooms_of, join_grooms, make_hairs, parse_recipe
 
 SEVERAL = """
-ringlet = 1
+ringlet = 2
 name = "several"
 
 [scalp]
@@ -42,7 +42,7 @@ extends = "small.recipe.toml"
 scalp.edge = { lines = ["brow"], width = 1 }
 guides = { count = 10, length = 1, lift = 0.1 }
 locks = { count = 30, points = 8 }
-nail = [{}]
+pin = [{}]
 hairs = { per_lock = 1 }
 color = { preset = "black" }
 """
@@ -105,12 +105,12 @@ def test_what_is_outside_of_the_grooms_is_of_all_and_each_may_differ(recipe):
 def test_a_variant_changes_one_groom_and_takes_away_another(project, recipe):
     variant = project / "variant.recipe.toml"
     variant.write_text(
-        'ringlet = 1\nextends = "several.recipe.toml"\n[color]\npreset = "gray"\n[grooms.hair.locks]\ncount = 5\n'
+        'ringlet = 2\nextends = "several.recipe.toml"\n[color]\npreset = "gray"\n[grooms.hair.locks]\ncount = 5\n'
     )
     read = ringlet.read_recipe(variant)
     assert read.grooms["hair"].locks.count == 5 and read.grooms["hair"].color.preset == "gray"
     assert read.grooms["brows"].model_dump() == ringlet.read_recipe(recipe).grooms["brows"].model_dump()
-    variant.write_text('ringlet = 1\nextends = "several.recipe.toml"\ngrooms.brows = false\n')
+    variant.write_text('ringlet = 2\nextends = "several.recipe.toml"\ngrooms.brows = false\n')
     assert list(ringlet.read_recipe(variant).grooms) == ["hair"]
 
 
@@ -144,7 +144,7 @@ def test_a_groom_file_keeps_each_groom_and_hairs_have_a_prim_each(project, recip
 
 
 def test_hairs_of_each_groom_have_their_own_fiber_in_pictures(project, recipe):
-    edit(recipe, "nail = [{}]", "nail = [{}]\nfiber = { roughness = 0.6 }")
+    edit(recipe, "pin = [{}]", "pin = [{}]\nfiber = { roughness = 0.6 }")
     assert run("groom", recipe, "-o", project / "groom.usdc").exit_code == 0
     assert run("hair", project / "groom.usdc", "-o", project / "hair.usdc").exit_code == 0
     shapes = split(io.read_hairs(project / "hair.usdc"))
@@ -153,7 +153,7 @@ def test_hairs_of_each_groom_have_their_own_fiber_in_pictures(project, recipe):
     assert of_fiber(shapes[1], ROUGHNESS) == pytest.approx(0.6)
 
 
-def test_all_grooms_are_simulated_and_a_nailed_one_moves_with_the_skin(project):
+def test_all_grooms_are_simulated_and_a_pinned_one_moves_with_the_skin(project):
     cache, hair = project / "cache.usdc", project / "hair.usdc"
     assert run("groom", project / "several.recipe.toml", "-o", project / "several.usdc").exit_code == 0
     assert run("sim", project / "several.shot.toml", "--groom", project / "several.usdc", "-o", cache).exit_code == 0

@@ -11,7 +11,7 @@ from ringlet.sim import simulate
 
 from ringlet import _core
 
-SHOT = 'ringlet = 1\ngroom = "groom.usdc"\nframes = [1, 6]\npreroll = 0\n'
+SHOT = 'ringlet = 2\ngroom = "groom.usdc"\nframes = [1, 6]\npreroll = 0\n'
 
 
 def scalp():
@@ -115,8 +115,8 @@ def test_statistics_describe_every_frame_of_the_solver():
             ["solver.safeguards", "material_frame", "history"],
         ),
         (("preroll = 0", "[forces]\ngravity = [0, nan, 0]"), ["forces.gravity", "nan"]),
-        (("ringlet = 1", ""), ["first line", "ringlet = 1"]),
-        (("ringlet = 1", "ringlet = "), ["TOML"]),
+        (("ringlet = 2", ""), ["first line", "ringlet = 2"]),
+        (("ringlet = 2", "ringlet = "), ["TOML"]),
     ],
 )
 def test_an_invalid_shot_is_refused_in_one_line(change, words):

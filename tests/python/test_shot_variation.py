@@ -16,7 +16,7 @@ from small_example import write_example, write_head
 import ringlet
 from ringlet import _core
 
-SHOT = 'ringlet = 1\ngroom = "groom.usdc"\nframes = [1, 1]\npreroll = 0\n'
+SHOT = 'ringlet = 2\ngroom = "groom.usdc"\nframes = [1, 1]\npreroll = 0\n'
 POINTS = 31
 
 

@@ -15,9 +15,9 @@ BOB = "[curves.bob]\npoints = [[-20, -4, 0], [20, -10, 0]]\n"
 SIDES = "mask = { where = 'y < 6' }\n"  # hair that hangs down
 
 
-def groom(shape, top="", guides="length = 10\nlift = 0.3\ndroop = 4", locks="count = 120\npoints = 24", more=""):
-    text = f"ringlet = 1\n[scalp]\nregion = 'scalp'\n{top}[guides]\ncount = 30\n{guides}\n[locks]\n{locks}\n"
-    return make_groom(parse_recipe(f"{text}[[shape]]\n{shape}\n{more}\n[clean]\nmargin = 0\n"), ball())
+def groom(shape, top="", guides="length = 10\nlift = 0.3\ngravity_bend = 4", locks="count = 120\npoints = 24", more=""):
+    text = f"ringlet = 2\n[scalp]\nregion = 'scalp'\n{top}[guides]\ncount = 30\n{guides}\n[locks]\n{locks}\n"
+    return make_groom(parse_recipe(f"{text}[[shape]]\n{shape}\n{more}\n[collide]\nmargin = 0\n"), ball())
 
 
 def tips(made):
@@ -36,7 +36,7 @@ def test_tips_of_a_bob_lie_on_a_drawn_line_within_its_softness():
 
 
 def test_the_envelope_of_an_afro_follows_a_mesh():
-    guides = "length = { value = 6, vary = 0.5 }\nlift = 1\ndroop = 0"
+    guides = "length = { value = 6, vary = 0.5 }\nlift = 1\ngravity_bend = 0"
     shape = "op = 'grow_to'\nmesh = 'round'\nsoft = '1 mm'"
     solid = ellipsoid()
 
@@ -50,7 +50,7 @@ def test_the_envelope_of_an_afro_follows_a_mesh():
 
 
 def ellipsoid():
-    mesh = parse_recipe(f"ringlet = 1\n{ROUND}").meshes["round"].inline_mesh("round")
+    mesh = parse_recipe(f"ringlet = 2\n{ROUND}").meshes["round"].inline_mesh("round")
     a, b, c = (mesh.points[mesh.triangles[:, k]] for k in range(3))
     volume = np.sum(a * np.cross(b, c)) / 6.0
     assert volume == pytest.approx(np.pi / 6.0 * 0.32 * 0.30 * 0.34, rel=0.01)  # closed, faces outwards
@@ -58,8 +58,8 @@ def ellipsoid():
 
 
 def test_a_cut_takes_a_mesh_or_a_line_too_and_never_lengthens():
-    plain = groom("op = 'bend'\nangle = 0", guides="length = 14\nlift = 1\ndroop = 0")
-    cut = groom("op = 'cut'\nmesh = 'round'\nsoft = 0\nat = -2", ROUND, "length = 14\nlift = 1\ndroop = 0")
+    plain = groom("op = 'bend'\nangle = 0", guides="length = 14\nlift = 1\ngravity_bend = 0")
+    cut = groom("op = 'cut'\nmesh = 'round'\nsoft = 0\nat = -2", ROUND, "length = 14\nlift = 1\ngravity_bend = 0")
     above = np.asarray(ellipsoid().above(np.ascontiguousarray(tips(cut)))[0])
     shorter = cut.locks.lengths() < plain.locks.lengths() - 1e-6
     assert shorter.sum() > 50 and (cut.locks.lengths() <= plain.locks.lengths() + 1e-9).all()
@@ -104,7 +104,7 @@ def test_a_mesh_is_read_from_a_file_and_read_again_when_it_changes(tmp_path):
         np.testing.assert_allclose(np.abs(ends).max(axis=1), 0.01 * half, atol=1e-6)
     (tmp_path / "variants").mkdir()
     variant = tmp_path / "variants" / "other.recipe.toml"
-    variant.write_text('ringlet = 1\nextends = "../small.recipe.toml"\n')
+    variant.write_text('ringlet = 2\nextends = "../small.recipe.toml"\n')
     assert np.array_equal(build_groom(variant).shapes.points, shapes.points)
 
 

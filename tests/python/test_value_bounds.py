@@ -7,7 +7,7 @@ from shapes import sheet
 from ringlet import UserError
 from ringlet.groom import make_groom, make_hairs, parse_recipe
 
-GROOM = "ringlet = 1\n[guides]\ncount = 12\nlength = 6\n[locks]\ncount = 12\npoints = 40\n"
+GROOM = "ringlet = 2\n[guides]\ncount = 12\nlength = 6\n[locks]\ncount = 12\npoints = 40\n"
 
 
 def groom(text, scalp=None):
@@ -39,10 +39,13 @@ def painted(value, name="map"):
         ("[curl]\ncurls = 3\nopening = [[0, 0], [1, 11]]", ["curl.opening", "11", "at most 10"]),
         ("[hairs]\nwidth = { value = '0.07 mm', ramp = [[0, 1], [1, 1e38]] }", ["hairs.width.ramp", "1e+38"]),
         ("[hairs]\nwidth = { value = '0.07 mm', ramp = [[0, 1], [1, 1e3]] }", ["hairs.width", "7e-05 m times 1000"]),
-        ("[hairs]\nradius = { value = 1, region = { a = 9 }, ramp = [[0, 2]] }", ["hairs.radius", "0.09 m times 2"]),
         (
-            "[[shape]]\nop = 'noise'\namount = { value = 1, ramp = [[0, 0], [1, 101]] }",
-            ["shape[0].amount", "0.01 m times"],
+            "[hairs]\nlock_radius = { value = 1, region = { a = 9 }, ramp = [[0, 2]] }",
+            ["hairs.lock_radius", "0.09 m times 2"],
+        ),
+        (
+            "[[shape]]\nop = 'noise'\nmagnitude = { value = 1, ramp = [[0, 0], [1, 101]] }",
+            ["shape[0].magnitude", "0.01 m times"],
         ),
     ],
 )
@@ -84,9 +87,9 @@ def test_hairs_are_no_wider_than_their_bound():
 
 
 def test_a_part_of_a_whole_saturates():
-    lift = "[guides]\ncount = 12\nlength = 6\ndroop = 0\nlift = {{ value = {}, map = 'map' }}\n"
+    lift = "[guides]\ncount = 12\nlength = 6\ngravity_bend = 0\nlift = {{ value = {}, map = 'map' }}\n"
     high, full = (
-        make_groom(parse_recipe("ringlet = 1\n" + lift.format(value)), painted(by)).guides.points
+        make_groom(parse_recipe("ringlet = 2\n" + lift.format(value)), painted(by)).guides.points
         for value, by in ((0.5, 1e30), (1.0, 1.0))
     )
     np.testing.assert_allclose(high, full, atol=1e-12)
@@ -94,7 +97,7 @@ def test_a_part_of_a_whole_saturates():
 
 def test_a_map_of_zero_gives_the_least_value():
     guides = make_groom(
-        parse_recipe("ringlet = 1\n[guides]\ncount = 12\nlength = { value = 6, map = 'map' }\n"), painted(0.0)
+        parse_recipe("ringlet = 2\n[guides]\ncount = 12\nlength = { value = 6, map = 'map' }\n"), painted(0.0)
     ).guides
     np.testing.assert_allclose(guides.lengths(), 1e-4, rtol=1e-6)
     with pytest.raises(UserError, match="too few for"):
@@ -102,13 +105,13 @@ def test_a_map_of_zero_gives_the_least_value():
 
 
 def test_chance_stays_within_the_bounds_of_a_value():
-    text = "ringlet = 1\n[guides]\ncount = 40\nlength = { value = '9 m', vary = 1 }\n"
+    text = "ringlet = 2\n[guides]\ncount = 40\nlength = { value = '9 m', vary = 1 }\n"
     lengths = make_groom(parse_recipe(text), sheet()).guides.lengths()
     assert lengths.min() < 5.0 and lengths.max() == pytest.approx(10.0)
 
 
 def test_zones_keep_guides_within_the_bounds_of_their_length():
-    text = "ringlet = 1\n[guides]\ncount = 12\nlength = '5 m'\n[[guides.zone]]\nlength = {}\nmask = 1\n"
+    text = "ringlet = 2\n[guides]\ncount = 12\nlength = '5 m'\n[[guides.zone]]\nlength = {}\nmask = 1\n"
     for factor, length in ((10, 10.0), (0, 1e-4)):
         guides = make_groom(parse_recipe(text.format(factor)), sheet()).guides
         np.testing.assert_allclose(guides.lengths(), length, rtol=1e-6)

@@ -87,7 +87,7 @@ def test_no_frame_mixes_two_versions_of_a_cache(folder: Path):
         assert len(set(marks)) > 3 and marks == sorted(marks)
 
 
-@pytest.mark.parametrize(("old", "new"), [("points = 40", "points = 30"), ("ringlet = 1", "ringlet = 1\nseed = 2")])
+@pytest.mark.parametrize(("old", "new"), [("points = 40", "points = 30"), ("ringlet = 2", "ringlet = 2\nseed = 2")])
 def test_replacing_a_cache_by_one_of_another_groom_is_reported(folder: Path, old: str, new: str):
     groom, cache = small_groom(folder), folder / "cache.usdc"
     write_marked_cache(groom, cache, 1, frames=5)

@@ -13,7 +13,7 @@ from ringlet.viewer.document import Document, _diff
 from ringlet.groom import parse_recipe
 
 TEXT = """# The head of the file.
-ringlet = 1
+ringlet = 2
 unit = "cm" # of lengths
 
 # Where it starts.
@@ -21,7 +21,7 @@ unit = "cm" # of lengths
 count = 12
 length = 8 # about a hand
 zone = [
-    { toward = [0, 0, 1], spread = 50 }, # a fringe
+    { toward = [0, 0, 1], angle = 50 }, # a fringe
 ]
 
 [[shape]]
@@ -31,7 +31,7 @@ size = 2
 # None knows where to go.
 [[shape]]
 op = "scraggle"
-amount = 0.5
+magnitude = 0.5
 
 # The look.
 [curl]
@@ -78,16 +78,18 @@ def test_a_new_setting_is_inserted_before_the_comment_of_the_next_table(document
 
 
 def test_a_missing_table_is_created(document: Document):
-    document.set([(["clean", "margin"], "3 mm"), (["hairs", "radius", "value"], "2 mm")])
+    document.set([(["collide", "margin"], "3 mm"), (["hairs", "lock_radius", "value"], "2 mm")])
     settings = tomllib.loads(document.text)
-    assert settings["clean"] == {"margin": "3 mm"} and settings["hairs"]["radius"]["value"] == "2 mm"
+    assert settings["collide"] == {"margin": "3 mm"} and settings["hairs"]["lock_radius"]["value"] == "2 mm"
 
 
 def test_settings_in_lists_and_operators_are_set_and_removed(document: Document):
-    document.set([(["guides", "zone", 0, "spread"], 30), (["shape", 1, "size"], 2.5), (["shape", 0, "size"], None)])
+    document.set(
+        [(["guides", "zone", 0, "angle"], 30), (["shape", 1, "wavelength"], 2.5), (["shape", 0, "size"], None)]
+    )
     settings = document.contents()
-    assert settings["guides"]["zone"][0]["spread"] == 30
-    assert settings["shape"] == [{"op": "clump"}, {"op": "scraggle", "amount": 0.5, "size": 2.5}]
+    assert settings["guides"]["zone"][0]["angle"] == 30
+    assert settings["shape"] == [{"op": "clump"}, {"op": "scraggle", "magnitude": 0.5, "wavelength": 2.5}]
 
 
 def test_operators_move_with_their_comments(document: Document):
@@ -113,7 +115,7 @@ def test_an_invalid_change_is_refused_and_changes_nothing(document: Document):
     with pytest.raises(UserError, match="none at 7"):
         document.remove_tables("shape", [7])
     with pytest.raises(UserError, match="cannot be set"):
-        document.set([(["guides", "zone", 9, "spread"], 30)])
+        document.set([(["guides", "zone", 9, "angle"], 30)])
     assert document.text == TEXT and not document.can_undo
 
 

@@ -144,20 +144,20 @@ def test_a_drawn_line_becomes_the_curve_of_a_parting_in_one_undo_step(folder: Pa
         one.receive("numbers")
         angle = np.linspace(-0.5, 0.5, 60)
         points = 0.09 * np.stack([0.1 + 0 * angle, np.cos(angle), np.sin(angle)], axis=1)
-        one.send(kind="draw", place=["guides", "part", "line"], points=points.tolist(), gesture=3)
+        one.send(kind="draw", place=["guides", "part_line", "curve"], points=points.tolist(), gesture=3)
         document = one.receive("document", dirty=True)
-        assert document["said"]["guides"]["part"] == {"line": "guides_part_line"}
-        drawn = np.array(document["said"]["curves"]["guides_part_line"]["points"])
+        assert document["said"]["guides"]["part_line"] == {"curve": "guides_part_line_curve"}
+        drawn = np.array(document["said"]["curves"]["guides_part_line_curve"]["points"])
         assert 3 < len(drawn) < 20 and np.allclose(np.linalg.norm(drawn[:, 1:], axis=1), 9.0, atol=0.02)
         assert np.abs(one.receive("locks", draft=False)["points"] - before).max() > 0.001
-        one.send(kind="draw", place=["guides", "part", "line"], points=points[::-1].tolist(), gesture=4)
+        one.send(kind="draw", place=["guides", "part_line", "curve"], points=points[::-1].tolist(), gesture=4)
         document = one.receive("document")
-        assert list(document["said"]["curves"]) == ["guides_part_line"]
+        assert list(document["said"]["curves"]) == ["guides_part_line_curve"]
         for _ in range(2):
             one.send(kind="undo")
             document = one.receive("document")
         assert not document["dirty"] and not document["undo"]
-        one.send(kind="draw", place=["guides", "part", "line"], points=[[0, 0.09, 0]] * 2, gesture=5)
+        one.send(kind="draw", place=["guides", "part_line", "curve"], points=[[0, 0.09, 0]] * 2, gesture=5)
         assert one.receive_trouble() == "draw: the stroke has no length; draw a line over the scalp"
 
 

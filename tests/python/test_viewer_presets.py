@@ -19,7 +19,7 @@ from ringlet.viewer.presets import LOOK, looks
 from ringlet.groom import Recipe, parse_recipe, read_recipe
 
 PRESET = """# Wide curls. A second sentence.
-ringlet = 1
+ringlet = 2
 
 [curl]
 width = 2.0
@@ -76,7 +76,7 @@ def test_settings_are_kept_as_a_preset_with_its_picture(folder: Path):
         kept = one.receive("presets")["presets"][0]
         assert kept["name"] == "mine.preset.toml" and kept["picture"] == url
         assert tomllib.loads((folder / "mine.preset.toml").read_text()) == {
-            "ringlet": 1,
+            "ringlet": 2,
             "curl": {"width": 1.0, "pitch": 1.5},
         }
         one.send(kind="keep", name="mine", tables=["curl"])
@@ -85,7 +85,7 @@ def test_settings_are_kept_as_a_preset_with_its_picture(folder: Path):
         assert "without a folder" in one.receive_trouble()
         one.send(kind="keep", name="other", tables=["curl"], picture="data:text/html,<p>")
         assert "no JPEG" in one.receive_trouble() and not (folder / "other.preset.toml").exists()
-        (folder / "bad.preset.toml").write_text("ringlet = 1\n[scalp]\nregion = 'nape'\n")
+        (folder / "bad.preset.toml").write_text("ringlet = 2\n[scalp]\nregion = 'nape'\n")
         one.send(kind="try", name="bad.preset.toml")
         assert one.receive_trouble().startswith("bad.preset.toml: scalp is not a table of a preset")
 
@@ -93,7 +93,7 @@ def test_settings_are_kept_as_a_preset_with_its_picture(folder: Path):
 def test_whole_looks_replace_all_tables_of_a_recipe_and_of_one_that_extends_another(folder: Path):
     assert len(looks()) > 20 and all(look.about for look in looks())
     (folder / "variant.recipe.toml").write_text(
-        'ringlet = 1\nextends = "small.recipe.toml"\n[curl]\nwidth = 0.7 # own\n'
+        'ringlet = 2\nextends = "small.recipe.toml"\n[curl]\nwidth = 0.7 # own\n'
     )
     look = next(one for one in looks() if one.name == "looks/two_strand_twists")
     wanted = read_recipe(look.file)
@@ -133,7 +133,7 @@ def test_stated_settings_are_read_back_as_they_were():
             name: [stated(one, "cm") for one in value] if isinstance(value, list) else stated(value, "cm")
             for name, value in tables.items()
         }
-        back = Recipe.model_validate({"ringlet": 1, **said}, context={"unit": UNITS["cm"]})
+        back = Recipe.model_validate({"ringlet": 2, **said}, context={"unit": UNITS["cm"]})
         for name in LOOK:
             _assert_alike(_dumped(getattr(back, name)), _dumped(getattr(recipe, name)), f"{file.name} {name}")
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 from pages import Page, page, read, serving
 
 import ringlet
@@ -330,3 +331,22 @@ def test_a_setting_of_one_lock_changes_no_other_lock(folder: Path):
         assert one.receive("document", dirty=True)["said"]["curl"]["width"] == {"value": 1.0, "lock": {str(lock): 2.5}}
         moved = np.abs(one.receive("locks", draft=False)["points"] - locks["points"]).reshape(8, -1).max(axis=1)
         assert moved[3] > 0.002 and np.delete(moved, 3).max() == 0.0
+
+
+@pytest.mark.filterwarnings("ignore::ringlet.data.former_names.FormerNames")
+def test_a_file_with_former_names_is_shown_by_present_names_and_saved_with_its_comments(folder: Path):
+    recipe = folder / "small.recipe.toml"
+    old = recipe.read_text().replace("ringlet = 2", "ringlet = 1").replace("length = 5", "length = 5\ndroop = 3 # down")
+    recipe.write_text(old)
+    with serving(folder) as client, page(client) as one:
+        assert (document := one.receive("document"))["said"]["guides"]["gravity_bend"] == 3 and not document["dirty"]
+        (problem,) = one.latest("problems")["problems"]
+        assert problem["message"].startswith("small.recipe.toml: guides.droop is now gravity_bend; the next save")
+        before = one.receive("locks", draft=False)["points"]
+        one.send(kind="set", changes=[[["guides", "gravity_bend"], 1]], gesture=1)
+        assert np.abs(one.receive("locks", draft=False)["points"] - before).max() > 0.002
+        assert recipe.read_text() == old
+        one.send(kind="save")
+        one.receive("saved")
+        assert not one.latest("problems")["problems"]
+    assert recipe.read_text() == old.replace("ringlet = 1", "ringlet = 2").replace("droop = 3", "gravity_bend = 1")

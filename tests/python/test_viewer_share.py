@@ -79,7 +79,7 @@ def test_a_share_page_has_the_snapshots_and_the_open_notes_of_the_review(folder:
         "notes/2": 'text = "done"\nresolved = true\n',
     }.items():
         (kept / name).parent.mkdir(parents=True, exist_ok=True)
-        (kept / f"{name}.toml").write_text(f"ringlet = 1\n{text}[look]\n{look}\nlocks = []\n")
+        (kept / f"{name}.toml").write_text(f"ringlet = 2\n{text}[look]\n{look}\nlocks = []\n")
     Image.new("RGB", (4, 4)).save(kept / "snapshots/1.png")
     ringlet.share(folder / "small.recipe.toml", tmp_path / "look.html")
     found = about((tmp_path / "look.html").read_text())

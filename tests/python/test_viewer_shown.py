@@ -107,19 +107,21 @@ def test_the_page_receives_the_names_that_settings_may_use(folder: Path):
         assert names["regions"] == ["scalp"] and names["curves"] == ["tie"]
 
 
-def test_nails_and_penetration_of_the_head_are_measured_at_rest(folder: Path):
+def test_pins_and_penetration_of_the_head_are_measured_at_rest(folder: Path):
     recipe = folder / "small.recipe.toml"
-    recipe.write_text(recipe.read_text() + '[[nail]]\nreach = "1 cm"\n[clean]\nmargin = 0\n')
-    text = recipe.read_text().replace("[clean]\nmargin = 0\n", "").replace("length = 5", "length = 5\ndroop = 3")
+    recipe.write_text(recipe.read_text() + '[[pin]]\nlength = "1 cm"\n[collide]\nmargin = 0\n')
+    text = (
+        recipe.read_text().replace("[collide]\nmargin = 0\n", "").replace("length = 5", "length = 5\ngravity_bend = 3")
+    )
     with serving(folder) as client, page(client) as one:
         measured = one.receive("measured")
-        nail = measured["nail"].reshape(8, 40)
-        assert np.all(nail[:, 0] == 255) and np.all(nail[:, -1] == 0)
+        pin = measured["pin"].reshape(8, 40)
+        assert np.all(pin[:, 0] == 255) and np.all(pin[:, -1] == 0)
         one.send(kind="restore", text=text)
-        one.send(kind="mute", stages=["clean"])
+        one.send(kind="mute", stages=["collide"])
         one.receive("numbers", draft=False)
         inside = one.receive("measured")
-        if inside["inside"] == 0:  # measured before cleaning was muted
+        if inside["inside"] == 0:  # measured before the collide stage was muted
             inside = one.receive("measured")
         assert inside["inside"] > 0 and inside["depth"].max() > 0
 
@@ -129,7 +131,7 @@ def test_frames_include_contacts_and_penetration_of_the_head(folder: Path):
     shot.write_text(shot.read_text().replace("frames = [1, 4]", "frames = [1, 2]") + "[contact]\nradius = 0.004\n")
     recipe = folder / "small.recipe.toml"
     recipe.write_text(
-        recipe.read_text().replace("length = 5", "length = 5\ndroop = 3")
+        recipe.read_text().replace("length = 5", "length = 5\ngravity_bend = 3")
     )  # lowers the locks onto the head
     with serving(folder, "small.shot.toml") as client, page(client) as one:
         one.latest("timeline", state="still")

@@ -13,7 +13,7 @@ from ringlet.viewer.simulation import Simulation
 
 
 def test_a_run_in_a_long_frame_is_replaced_without_waiting_for_it(monkeypatch):
-    shot = parse_shot('ringlet = 1\ngroom = "a.usdc"\nframes = [1, 2]\npreroll = 0')
+    shot = parse_shot('ringlet = 2\ngroom = "a.usdc"\nframes = [1, 2]\npreroll = 0')
     release, entered, done = threading.Event(), threading.Event(), threading.Event()
 
     def start_motion(shot, groom, on_warning):

@@ -89,7 +89,7 @@ def test_loading_a_snapshot_is_one_undo_step_and_keeps_comments_of_the_recipe(fo
 
 def test_a_snapshot_of_a_variant_looks_the_same_after_its_base_has_changed(folder: Path):
     base, variant = folder / "small.recipe.toml", folder / "more.recipe.toml"
-    variant.write_text('ringlet = 1\nextends = "small.recipe.toml"\n\n[curl]\nwidth = 1.4\n')
+    variant.write_text('ringlet = 2\nextends = "small.recipe.toml"\n\n[curl]\nwidth = 1.4\n')
     with serving(folder, variant.name) as client, page(client) as one:
         points = one.receive("locks", side="a", draft=False)["points"]
         taken = take(one)

@@ -73,7 +73,7 @@ def test_an_outside_write_is_loaded_as_an_undo_step(folder: Path):
 
 def test_an_outside_write_of_the_base_of_a_variant_is_seen(folder: Path):
     base, variant = folder / "small.recipe.toml", folder / "more.recipe.toml"
-    variant.write_text('ringlet = 1\nextends = "small.recipe.toml"\n')
+    variant.write_text('ringlet = 2\nextends = "small.recipe.toml"\n')
     with serving(folder, variant.name) as client, page(client) as one:
         one.receive("document")
         base.write_text(base.read_text().replace("pitch = 1.5", "pitch = 1.9"))
@@ -142,7 +142,7 @@ def test_a_conflict_is_merged_by_setting(conflict: tuple[Page, Path]):
 
 
 def test_a_merge_takes_whole_lists_of_operators_with_their_comments():
-    base = 'ringlet = 1\n\n[[shape]]\nop = "clump"\n\n[curl]\nwidth = 1\n'
+    base = 'ringlet = 2\n\n[[shape]]\nop = "clump"\n\n[curl]\nwidth = 1\n'
     mine = base.replace("[curl]", '# flat\n[[shape]]\nop = "loft" # a little\n\n[curl]')
     theirs = base.replace("width = 1", "width = 2 # wide")
     versions = Versions(base, mine, theirs)
@@ -254,7 +254,7 @@ def test_frames_tell_their_run_and_come_back_with_their_groom(folder: Path):
 def test_operators_are_added_to_a_recipe_that_extends_another(folder: Path):
     base = folder / "small.recipe.toml"
     base.write_text(base.read_text() + '[curves.wave]\npoints = [[0, 9, 0], [0, 14, 0]]\n[[shape]]\nop = "loft"\n')
-    (folder / "more.recipe.toml").write_text('ringlet = 1\nextends = "small.recipe.toml"\n')
+    (folder / "more.recipe.toml").write_text('ringlet = 2\nextends = "small.recipe.toml"\n')
     with serving(folder, "more.recipe.toml") as client, page(client) as one:
         one.send(kind="arrange", action="add", at=1, op="attract", values={"curve": "wave"})
         one.send(kind="arrange", action="add", at=2, op="scraggle")

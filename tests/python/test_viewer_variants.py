@@ -21,13 +21,13 @@ def test_a_variant_contains_only_differences(folder: Path):
 SHAPES = """
 [[shape]]
 op = "scraggle"
-amount = 0.2
+magnitude = 0.2
 [[shape]]
 op = "clump"
 size = 3
 [[shape]]
 op = "scraggle"
-amount = 0.1
+magnitude = 0.1
 """
 
 
@@ -36,21 +36,21 @@ def extended(folder: Path) -> Path:
     """A recipe that extends one with three operators."""
     base = folder / "small.recipe.toml"
     base.write_text(base.read_text() + SHAPES)
-    (folder / "more.recipe.toml").write_text('ringlet = 1\nextends = "small.recipe.toml"\n[curl]\nwidth = 1.3\n')
+    (folder / "more.recipe.toml").write_text('ringlet = 2\nextends = "small.recipe.toml"\n[curl]\nwidth = 1.3\n')
     return folder
 
 
 def test_operators_of_a_base_are_changed_and_removed_by_name(extended: Path):
     with serving(extended, "more.recipe.toml") as client, page(client) as one:
         assert [stage["op"] for stage in one.receive("document")["stages"]][2:5] == ["scraggle", "clump", "scraggle"]
-        one.send(kind="set", changes=[[["shape", 2, "amount"], 0.4]], gesture=1)
+        one.send(kind="set", changes=[[["shape", 2, "magnitude"], 0.4]], gesture=1)
         document = one.receive("document", dirty=True)
-        assert document["said"]["shape"] == [{}, {}, {"amount": 0.4}]
-        assert document["values"]["shape"][2]["amount"]["value"] == 0.004
+        assert document["said"]["shape"] == [{}, {}, {"magnitude": 0.4}]
+        assert document["values"]["shape"][2]["magnitude"]["value"] == 0.004
         one.send(kind="arrange", action="remove", at=0)
         document = one.receive("document")
         assert [stage["op"] for stage in document["stages"]][2:4] == ["clump", "scraggle"]
-        assert document["values"]["shape"][1]["amount"]["value"] == 0.004
+        assert document["values"]["shape"][1]["magnitude"]["value"] == 0.004
         one.send(kind="arrange", action="remove", at=1)
         assert [stage["op"] for stage in one.receive("document")["stages"]][2:4] == ["clump", "curl"]
         one.send(kind="arrange", action="move", at=0, to=0)
@@ -70,7 +70,7 @@ def test_operators_of_a_base_are_changed_and_removed_by_name(extended: Path):
         {"kind": "set", "changes": [[["curl"], None]]},
         {
             "kind": "set",
-            "changes": [[["shape", 1, "size"], None], [["shape", 2, "amount"], {"value": 0.3, "vary": 0.1}]],
+            "changes": [[["shape", 1, "size"], None], [["shape", 2, "magnitude"], {"value": 0.3, "vary": 0.1}]],
         },
         {"kind": "arrange", "action": "remove", "at": 0},
         {"kind": "arrange", "action": "move", "at": 0, "to": 1},

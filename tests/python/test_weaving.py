@@ -102,7 +102,7 @@ def test_hairs_of_a_strand_fill_it():
     made = groom("strands = 3", BRAID)
     made.hairs = {
         "per_lock": 40,
-        "radius": {"value": 0.1, "ramp": [(0.0, 1.0)]},
+        "lock_radius": {"value": 0.1, "ramp": [(0.0, 1.0)]},
         "frizz": 0.0,
         "stray": 0.0,
         "shorter": 0.0,

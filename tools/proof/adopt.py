@@ -30,7 +30,7 @@ def known(name: str, locks: int) -> list[str]:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, "known.recipe.toml")
         path.write_text(
-            f'ringlet = 1\nextends = "{TYPES / name}.recipe.toml"\n[locks]\ncount = {locks}\n'
+            f'ringlet = 2\nextends = "{TYPES / name}.recipe.toml"\n[locks]\ncount = {locks}\n'
             "[hairs]\ndensity = false\nper_lock = 8\n"
         )
         recipe = ringlet.read_recipe(path)

@@ -30,7 +30,7 @@ SHAPES = {
     ),
 }
 RECIPE = """
-ringlet = 1
+ringlet = 2
 seed = 7
 [scalp]
 file = "head.usdc"
@@ -40,7 +40,7 @@ region = "scalp"
 count = 110
 length = 9
 lift = 0.35
-droop = 1.6
+gravity_bend = 1.6
 [locks]
 points = {points}
 [locks.sections]

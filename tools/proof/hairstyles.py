@@ -13,7 +13,7 @@ from ringlet.data.groom import Groom
 from ringlet.data.mesh import Clip
 from ringlet.shot import Collider, Shot, parse_shot
 from ringlet.sim import Motion, Obstacle
-from ringlet.sim.nails import held_vertices
+from ringlet.sim.hair_pins import held_vertices
 
 import ringlet
 from ringlet import _core
@@ -21,7 +21,7 @@ from ringlet import _core
 Array = NDArray[np.float64]
 
 HEAD = Path(__file__).parents[2] / "examples" / "child" / "head.usdc"
-TIE, IN_TIE = np.array([0.0, 0.44, -0.102]), 0.02  # [m] centre of the bun on the example head, and reach of its nails
+TIE, IN_TIE = np.array([0.0, 0.44, -0.102]), 0.02  # [m] centre of the bun on the example head, and reach of its pins
 MODES = ("none", "lofted", "equilibrium")
 SAG_TIME = 3.0  # [s] by then a lock without equilibrium has sagged
 FPS, BOUNCE_FPS = 24.0, 96.0  # [1/s] step rates of the drift and of the bounce
@@ -29,7 +29,7 @@ WEIGHTLESS = 0.5  # [s] duration without gravity
 DROP, DROP_TIME, BOUNCE_TIME = 0.05, 0.1, 1.2  # drop [m], its duration [s], and the duration of the measurement [s]
 
 BASE = """
-ringlet = 1
+ringlet = 2
 seed = 7
 unit = "cm"
 [scalp]
@@ -37,22 +37,22 @@ file = "{head}"
 {mesh}region = "{region}"
 [guides]
 count = 110
-length = {{ value = {length}, vary = 0.08, noise = 0.13, noise_size = 4 }}
+length = {{ value = {length}, vary = 0.08, noise = 0.13, noise_wavelength = 4 }}
 lift = {{ value = {lift}, noise = 0.12 }}
-droop = {droop}
-zone = [{{ toward = [0, 0.4, 1], spread = 50, length = 0.5, lift = 0.85, droop = 1.6 }}]
+gravity_bend = {gravity_bend}
+zone = [{{ toward = [0, 0.4, 1], angle = 50, length = 0.5, lift = 0.85, gravity_bend = 1.6 }}]
 [locks]
 count = {locks}
 points = {points}
 [[shape]]
 op = "scraggle"
-amount = 0.5
-size = 3
+magnitude = 0.5
+wavelength = 3
 {more}
 [hairs]
 per_lock = 60
-radius = "3.4 mm"
-spread = "9 mm"
+lock_radius = "3.4 mm"
+root_radius = "9 mm"
 """
 
 CURL = "[curl]\nwidth = {}\ncurls = {{ value = {}, vary = 0.1 }}\n"
@@ -66,16 +66,16 @@ rise = 0.2
 points = [[0, 44, -10.2], [0, 46, -12], [2, 45, -13.5], [1, 43, -13.5], [-1, 43, -12.5], [-1, 45, -12]]
 """
 STYLES = {
-    "demo": {"length": 8.4, "lift": 0.86, "droop": 0.48, "points": 72, "more": CURL.format(1.12, 6)},
-    "afro 4A": {"length": 5, "lift": 0.9, "droop": 0.2, "points": 96, "more": CURL.format(0.5, 9)},
-    "long 3B": {"length": 20, "lift": 0.4, "droop": 2.6, "points": 96, "more": CURL.format(1.5, 8)},
-    "down": {"length": 17, "lift": 0.3, "droop": 2.2, "points": 72, "more": CURL.format(0.8, 6)},
-    "lying": {"length": 9, "lift": 0.02, "droop": 3, "points": 72, "more": CURL.format(0.15, 6)},
-    "bun": {"length": 20, "lift": 0.3, "droop": 1.0, "points": 72, "more": BUN + CURL.format(0.3, 6)},
+    "demo": {"length": 8.4, "lift": 0.86, "gravity_bend": 0.48, "points": 72, "more": CURL.format(1.12, 6)},
+    "afro 4A": {"length": 5, "lift": 0.9, "gravity_bend": 0.2, "points": 96, "more": CURL.format(0.5, 9)},
+    "long 3B": {"length": 20, "lift": 0.4, "gravity_bend": 2.6, "points": 96, "more": CURL.format(1.5, 8)},
+    "down": {"length": 17, "lift": 0.3, "gravity_bend": 2.2, "points": 72, "more": CURL.format(0.8, 6)},
+    "lying": {"length": 9, "lift": 0.02, "gravity_bend": 3, "points": 72, "more": CURL.format(0.15, 6)},
+    "bun": {"length": 20, "lift": 0.3, "gravity_bend": 1.0, "points": 72, "more": BUN + CURL.format(0.3, 6)},
 }
 
 SHOT = """
-ringlet = 1
+ringlet = 2
 groom = "style.recipe.toml"
 frames = [1, 2]
 preroll = 0
@@ -158,5 +158,5 @@ def make_style(name: str, locks: int, head: Path, region: str) -> Style:
         groom = ringlet.build_groom(recipe)
     if name == "bun":
         inside = np.linalg.norm(groom.locks.points - TIE, axis=1) < IN_TIE
-        groom.locks.point["nail"] = inside.astype(np.float32)
+        groom.locks.point["pin"] = inside.astype(np.float32)
     return Style(groom)

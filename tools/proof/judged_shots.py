@@ -31,18 +31,18 @@ def start(
     recipe: str | None = None,
     locks: int | None = None,
     balanced: Path | None = None,
-    clean: bool = True,
+    collide: bool = True,
 ):
     """Starts a shot of the example by its name, optionally with another recipe or number of locks.
 
     balanced: file for rest shapes in equilibrium; None: the shot's own rest shapes
-    clean: whether the groom keeps its locks out of skin and clothes
+    collide: whether the groom keeps its locks out of skin and clothes
     """
     settings = api.read_shot(EXAMPLE / f"{shot}.shot.toml")
     made = api.read_recipe(EXAMPLE / f"{recipe}.recipe.toml" if recipe else settings.groom)
     count = made.locks.count if locks is None else locks
     made = made.model_copy(update={"locks": made.locks.model_copy(update={"count": count})})
-    groom = api.build_groom(made if clean else without_muted(made, frozenset({"clean"})))
+    groom = api.build_groom(made if collide else without_muted(made, frozenset({"collide"})))
     if balanced is not None:
         rest = settings.rest.model_copy(update={"mode": "equilibrium", "file": balanced})
         settings = settings.model_copy(update={"rest": rest})

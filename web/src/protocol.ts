@@ -711,7 +711,7 @@ export interface Measured {
   kind: "measured";
   inside: number;
   depth: Uint8Array;
-  nail: Uint8Array;
+  pin: Uint8Array;
 }
 
 /** A frame of the shot or of a cache. layer: ``shot``, or ``against`` for the cache to compare with. */

@@ -1,6 +1,6 @@
 """The settings of a recipe or a shot, found in Ringlet's JSON schema.
 
-A table of settings is flattened: a setting is its place below the table, ``("part", "offset")``. What sliders cannot
+A table of settings is flattened: a setting is its place below the table, ``("part_line", "offset")``. What sliders cannot
 hold, such as zones or lists of dyes, stays to the text.
 """
 
@@ -13,10 +13,10 @@ from pathlib import Path
 from typing import Any
 
 SECTIONS = {
-    "recipe": ("guides", "locks", "curl", "hairs", "color", "fiber", "clean"),
+    "recipe": ("guides", "locks", "curl", "hairs", "color", "fiber", "collide"),
     "shot": ("strands", "contact", "solver", "forces", "rest"),
 }
-VARIATION = ("vary", "noise", "noise_size", "map", "ramp")  # of a value that differs from lock to lock
+VARIATION = ("vary", "noise", "noise_wavelength", "map", "ramp")  # of a value that differs from lock to lock
 DEPTH = 2  # tables in tables that are flattened
 
 

@@ -21,6 +21,7 @@ from ringlet.api import (
     program,
     run,
     shots,
+    upgrades,
 )
 from ringlet.api.adoption import *
 from ringlet.api.convergence import *
@@ -42,6 +43,7 @@ from ringlet.api.shots import cloths_and_colliders as cloths_and_colliders
 from ringlet.api.shots import run_inputs as run_inputs
 from ringlet.api.shots import scalp_clip as scalp_clip
 from ringlet.api.shots import start_motion as start_motion
+from ringlet.api.upgrades import *
 
 __all__: list[str] = []
 __all__ += adoption.__all__
@@ -56,3 +58,4 @@ __all__ += pictures.__all__
 __all__ += program.__all__
 __all__ += run.__all__
 __all__ += shots.__all__
+__all__ += upgrades.__all__

@@ -22,6 +22,7 @@ from ringlet.data.files import check_place, replacing
 from ringlet.data.groom import OFFSETS
 from ringlet.data.reads import recorded
 from ringlet.data.resampling import Resampling
+from ringlet.data.settings import FORMAT
 from ringlet.data.stage import StageSpace
 from ringlet.data.toml import to_toml
 
@@ -284,7 +285,7 @@ def _tables(
     """The tables of the recipe."""
     coiled = coils.coiled
     tables: dict[str, Any] = {
-        "ringlet": 1,
+        "ringlet": FORMAT,
         "name": stem,
         "unit": "mm",
         "scalp": scalp,
@@ -302,7 +303,7 @@ def _tables(
             "irregularity": 0.0,
             "start": f"{1e3 * min(pitch, 0.5):.4g} mm",
         }
-    return {**tables, "clean": {"margin": 0.0}, "hairs": {"file": files["hairs"].name}}
+    return {**tables, "collide": {"margin": 0.0}, "hairs": {"file": files["hairs"].name}}
 
 
 def _lock_points(hair: _Hair, coils: Coils) -> int:

@@ -32,7 +32,8 @@ COMMANDS = [
     "hair",
     "convert",
     "adopt",
-    "picture",
+    "upgrade",
+    "render",
     "movie",
     "turntable",
     "view",
@@ -43,6 +44,7 @@ COMMANDS = [
     "doctor",
     "bench",
 ]
+FORMER_COMMANDS = {"picture": "render"}
 CONTEXT = {"bench": {"allow_extra_args": True, "ignore_unknown_options": True}}  # a benchmark takes what it likes
 INTERRUPTED = 130  # what typer makes of a KeyboardInterrupt
 
@@ -56,6 +58,7 @@ class Front(TyperGroup):
             with warnings.catch_warnings(), ringlet.recorded():  # no command replaces a file that it reads
                 if not os.environ.get("RINGLET_DEBUG"):
                     warnings.simplefilter("ignore")  # those of libraries are for programmers
+                show_former_names()
                 code = super().main(args, *rest, standalone_mode=False, **extra) or 0
             if code == INTERRUPTED:
                 fail("interrupted", code)
@@ -79,6 +82,12 @@ class Front(TyperGroup):
             code = fail(bug(), 3)
         sys.exit(code)
 
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """The command of a name; a former name is read too."""
+        if (name := FORMER_COMMANDS.get(cmd_name, cmd_name)) != cmd_name:
+            print(f"note: ringlet {cmd_name} is now ringlet {name}", file=sys.stderr)
+        return super().get_command(ctx, name)
+
 
 def reason(error: typer.TyperException) -> str:
     """What is wrong with a command line; of a value that a bound or a type refuses, in our own words."""
@@ -87,6 +96,21 @@ def reason(error: typer.TyperException) -> str:
     if option and hasattr(cause, "errors"):
         return str(ringlet.explain(cause, option[0]))
     return error.format_message()
+
+
+def show_former_names() -> None:
+    """Prints each note on former names of settings once, until the warnings are caught no more."""
+    shown, others = set[str](), warnings.showwarning
+
+    def show(message: Warning | str, category: type[Warning], *rest: Any) -> None:
+        if not issubclass(category, ringlet.FormerNames):
+            others(message, category, *rest)
+        elif str(message) not in shown:
+            shown.add(str(message))
+            print("note:", message, file=sys.stderr)
+
+    warnings.filterwarnings("always", category=ringlet.FormerNames)
+    warnings.showwarning = show
 
 
 def fail(message: str, code: int) -> int:

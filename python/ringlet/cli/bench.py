@@ -20,7 +20,7 @@ def bench(
         str,
         typer.Argument(
             metavar="NAME",
-            help="What to measure: clean, cloth, direct, groom, growth, head, iterations, liveliness, mixed, page, "
+            help="What to measure: cloth, collide, direct, groom, growth, head, iterations, liveliness, mixed, page, "
             "rest, slider, strands, twirl, view, warp …",
         ),
     ],

@@ -173,8 +173,8 @@ class Curves:
         return self
 
     def _check_values(self, what: str) -> None:
-        """Refuses widths, radii, nails and ties out of range."""
-        ranges = {"width": (0.0, np.inf), "strand_radius": (0.0, np.inf), "nail": (0.0, 1.0), "tied": (0.0, 1.0)}
+        """Refuses widths, radii, pins and ties out of range."""
+        ranges = {"width": (0.0, np.inf), "strand_radius": (0.0, np.inf), "pin": (0.0, 1.0), "tied": (0.0, 1.0)}
         for name, (least, most) in ranges.items():
             for kind, attributes in (("curve", self.curve), ("point", self.point)):
                 values = np.asarray(attributes.get(name, ()))

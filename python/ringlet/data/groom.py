@@ -82,7 +82,7 @@ class Groom:
     guides:     the artist's low-resolution curves
     locks:      groom guides, one per lock. Curve attributes: ``root_triangle`` (count,) int32 into ``scalp.triangles``,
                 ``root_barycentric`` (count, 3) float64. Their points are the groomed shape in the rest pose [m].
-                Point attributes: ``nail`` (n,), where something is nailed: how firmly the skin holds a point, 0 to 1;
+                Point attributes: ``pin`` (n,), where something is pinned: how firmly the skin holds a point, 0 to 1;
                 ``tied`` (n,), where something is tied. Locks with a thickness of their own have ``strand_radius`` [m].
     scalp:      the mesh they grow on, in its rest pose
     scalp_file: the USD file it came from (None for a mesh made in memory)

@@ -193,7 +193,7 @@ class Varied(Section):
     noise: float = Field(
         default=0.0, ge=0.0, le=1.0, description="smooth change over the scalp, as a part of the value"
     )
-    noise_size: Annotated[float, Quantity("m", 1e-4, 10.0)] = Field(
+    noise_wavelength: Annotated[float, Quantity("m", 1e-4, 10.0)] = Field(
         default=0.03, description="distance over which the noise changes"
     )
     map: str | None = Field(
@@ -215,7 +215,7 @@ class Varied(Section):
         if self.vary > 0.0:
             factor += self.vary * (2.0 * random.uniform(ids) - 1.0)
         if self.noise > 0.0:
-            factor += self.noise * random.field(places, self.noise_size)
+            factor += self.noise * random.field(places, self.noise_wavelength)
         return np.maximum(factor, 0.05)  # variations that add up never change the sign of a value
 
 

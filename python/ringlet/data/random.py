@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtri
 
+from ringlet.data.former_names import first_name
+
 
 def _mix(x: NDArray[np.uint64]) -> NDArray[np.uint64]:
     """The finaliser of SplitMix64 (Steele, Lea and Flood 2014): each bit of the result depends on all bits of x."""
@@ -21,10 +23,10 @@ def _mix(x: NDArray[np.uint64]) -> NDArray[np.uint64]:
 
 
 class Random:
-    """The numbers of one purpose, e.g. ``Random(seed, "scraggle")``."""
+    """The numbers of one purpose, e.g. ``Random(seed, "scraggle")``; a renamed setting keeps its numbers."""
 
     def __init__(self, seed: int, purpose: str) -> None:
-        digest = blake2b(f"{seed}/{purpose}".encode(), digest_size=8).digest()
+        digest = blake2b(f"{seed}/{first_name(purpose)}".encode(), digest_size=8).digest()
         self._key = np.uint64(int.from_bytes(digest, "little"))
 
     def _bits(self, ids: NDArray, column: int | NDArray) -> NDArray[np.uint64]:

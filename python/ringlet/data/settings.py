@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
+import warnings
 from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
@@ -13,13 +14,14 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, model_validator
 from pydantic_core import PydanticCustomError
 
 from ringlet.data.errors import UserError
-from ringlet.data.explain import did_you_mean, explain_toml, shown
+from ringlet.data.explain import did_you_mean, explain_toml, setting_name, shown
+from ringlet.data.former_names import FormerNames, note, present
 from ringlet.data.reads import record
 from ringlet.data.regular import read_text
 
 MOST_PARTS = 50  # of a dotted key
 LONG_KEY = re.compile(rf"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){{{MOST_PARTS}}}""")
-FORMAT = 1  # of recipes, shots and files of edits
+FORMAT = 2  # of recipes, shots and files of edits; those of format 1 may have former names of settings
 OWN_KEYS = {"recipe": {"scalp", "extends"}, "shot": {"groom"}}  # keys of one kind of file alone
 
 
@@ -105,14 +107,31 @@ def check_name(name: str, names: Iterable[str], where: str, what: str) -> None:
 
 
 def read_toml(path: Path, kind: str) -> tuple[str, dict[str, Any]]:
-    """Text and tables of a TOML file that begins with ``ringlet = 1``; ``kind`` (recipe, shot) is for messages."""
+    """Text and tables of a TOML file that begins with ``ringlet = 2``; ``kind`` (recipe, shot) is for messages."""
     text = read_text(path, f"give a {kind}" if kind.startswith("file") else f"give a {kind} file")
     record(path)
     return text, parse_toml(text, path.name, kind)
 
 
 def parse_toml(text: str, where: str, kind: str) -> dict[str, Any]:
-    """Tables of a TOML text that begins with ``ringlet = 1``."""
+    """Tables of a TOML text that begins with ``ringlet = 2``, in the present format.
+
+    Former names of settings in a text of format 1 are replaced by the present ones, with a warning.
+    """
+    read = parse_tables(text, where, kind)
+    data, found = present(read, where)
+    if found and read["ringlet"] == FORMAT:
+        raise UserError(
+            f"{where}: {setting_name(found[0].place)} is a name of format 1, and {found[0].rename.name} that of format "
+            f"{FORMAT}; rename it, or run: ringlet upgrade FILE"
+        )
+    if found:
+        warnings.warn(f"{where}: {note(found)}; ringlet upgrade rewrites the file", FormerNames, stacklevel=2)
+    return {**data, "ringlet": FORMAT}
+
+
+def parse_tables(text: str, where: str, kind: str) -> dict[str, Any]:
+    """Tables of a TOML text as they are written there; raises UserError for one of an unknown format."""
     if LONG_KEY.search(text):  # of quadratic time in the parser
         raise UserError(f"{where}: is not valid TOML: a key of over {MOST_PARTS} parts; shorten it")
     try:
@@ -122,8 +141,11 @@ def parse_toml(text: str, where: str, kind: str) -> dict[str, Any]:
     if "\0" in "".join(leaf for leaf in _leaves(data) if isinstance(leaf, str)):
         raise UserError(f"{where}: has a text with a character of code 0; take it out")
     if "ringlet" not in data:
-        raise UserError(f"{where}: is not a Ringlet {kind}; its first line must be 'ringlet = 1'")
-    if isinstance(version := data["ringlet"], int) and version > FORMAT:
+        raise UserError(f"{where}: is not a Ringlet {kind}; its first line must be 'ringlet = {FORMAT}'")
+    version = data["ringlet"]
+    if not isinstance(version, int) or isinstance(version, bool) or version < 1:
+        raise UserError(f"{where}: ringlet is {shown(version)}; must be {FORMAT}, the version of the format")
+    if version > FORMAT:
         raise UserError(
             f"{where}: ringlet is {shown(version)}; this Ringlet reads {kind} files up to {FORMAT}: update it"
         )

@@ -16,8 +16,8 @@ from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Mesh
 from ringlet.data.thickness import own_radii
-from ringlet.groom.nails import NAIL
 from ringlet.groom.operators.operator import packed
+from ringlet.groom.pins import PIN
 
 Array = NDArray[np.float64]
 
@@ -166,7 +166,7 @@ def _add_thick(findings: Findings, allowed: Allowed) -> None:
     rows = _near(findings.locks, radius > 0.5 * allowed.thickness, widest)
     locks = findings.locks.take(rows)
     points = np.concatenate([np.arange(*findings.locks.offsets[row : row + 2]) for row in rows])
-    held = findings.locks.point.get(NAIL, np.zeros(len(radius)))[points] >= 1.0
+    held = findings.locks.point.get(PIN, np.zeros(len(radius)))[points] >= 1.0
     pair, place, distance = _core.crossings(*packed(locks), widest)
     touching = radius[points[pair]].sum(axis=1)
     new = (distance < touching) & (touching > allowed.thickness) & ~held[pair].all(axis=1)

@@ -23,7 +23,7 @@ class Move(Section):
 
     at: Annotated[float, Quantity("", 0.0, 1.0)] = Field(description="place on the lock, from root (0) to tip (1)")
     by: Place = Field(description="how far: along the two axes across the shape of the lock, and along it")
-    reach: Annotated[float, Quantity("", 0.001, 10.0)] = Field(
+    falloff: Annotated[float, Quantity("", 0.001, 10.0)] = Field(
         default=0.2, description="part of the lock on either side that comes with it, less and less"
     )
 
@@ -78,7 +78,7 @@ class Edits(Operator):
             if edit.offsets:
                 by += resampled(np.array([(0.0, 0.0, 0.0), *edit.offsets[1:]]), len(u), even=False)
             for move in edit.move:
-                t = np.clip(1.0 - np.abs(u - move.at) / move.reach, 0.0, 1.0)
+                t = np.clip(1.0 - np.abs(u - move.at) / move.falloff, 0.0, 1.0)
                 by += (t * t * (3.0 - 2.0 * t))[:, None] * np.array(move.by)
             points[row] += np.einsum("nij,nj->ni", shape_frames(context.shapes or curves, row, frames[row], u), by)
             points[row, 0] = root

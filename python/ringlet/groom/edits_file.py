@@ -14,7 +14,7 @@ from ringlet.data.errors import UserError
 from ringlet.data.files import replacing, within
 from ringlet.data.groom import Groom
 from ringlet.data.regular import read_bytes
-from ringlet.data.settings import did_you_mean
+from ringlet.data.settings import FORMAT, did_you_mean
 from ringlet.data.toml import to_toml
 from ringlet.groom.edits import offsets_to
 from ringlet.groom.load import EDITS, read_edits
@@ -43,7 +43,7 @@ def write_edits(edits: list[dict[str, Any]], path: Path) -> None:
 
 def edits_text(edits: dict[str, list[dict[str, Any]]]) -> str:
     """The text of a file of edits."""
-    return to_toml({"ringlet": 1, **{kind: edits[kind] for kind in EDITS if edits[kind]}})
+    return to_toml({"ringlet": FORMAT, **{kind: edits[kind] for kind in EDITS if edits[kind]}})
 
 
 @contextmanager

@@ -18,7 +18,7 @@ CHOICE = 6  # nearest leaders that a lock may follow
 Apart = Annotated[
     float,
     Quantity("deg", 1.0, 180.0),
-    Field(description="locks that lean further apart than this, as across a parting, are not in one group"),
+    Field(description="locks that lean further apart than this, as across a part line, are not in one group"),
 ]
 
 

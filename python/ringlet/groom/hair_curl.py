@@ -29,11 +29,11 @@ class Families(Section):
     count: Annotated[Varied, Quantity("", 1, MOST_FAMILIES)] = Field(
         default=Varied(value=5), description="families of a lock"
     )
-    amount: Annotated[Ramped, Quantity("", 0.0, 1.0)] = Field(
+    tightness: Annotated[Ramped, Quantity("", 0.0, 1.0)] = Field(
         default=Ramped(value=0.8, ramp=[(0, 0), (0.3, 1), (1, 0.9)]),
-        description="how far hairs are drawn together: 0 not, 1 to the size of a family",
+        description="how far hairs are drawn together: 0 not, 1 to the radius of a family",
     )
-    size: Annotated[Varied, Quantity("m", 0.0, 0.05)] = Field(
+    radius: Annotated[Varied, Quantity("m", 0.0, 0.05)] = Field(
         default=Varied(value=0.0001), description="radius of a family that is wholly drawn together"
     )
     noise: Annotated[Varied, Quantity("m", 0.0, 0.05)] = Field(
@@ -53,7 +53,7 @@ class HairCurl(Section):
     slip: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
         default=Varied(value=0.3), description="by how much these slip, in turns"
     )
-    alike: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
+    coherence: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
         default=Varied(value=0.5), description="how much of drift and slips the hairs of a family share"
     )
     escape: Annotated[Ramped, Quantity("m", 0.0, 0.1)] = Field(
@@ -82,7 +82,7 @@ class HairCoil(Section):
     irregularity: Annotated[Varied, Quantity("", 0.0, 0.9)] = Field(
         default=Varied(value=0.3), description="how much the pitch wanders along a hair"
     )
-    alike: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
+    coherence: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
         default=Varied(value=0.0), description="how much of phase and pitch the hairs of a family share"
     )
 
@@ -149,11 +149,11 @@ def curl_layout(
     }
     wander = np.zeros((count, 2 * knots))
     if family_values is not None:
-        own_size = hairs.radius / np.sqrt(np.maximum(family_values("count")[lock], 1.0))
-        share = np.clip(1.0 - family_values("size")[lock] / np.maximum(own_size, 1e-9), 0.0, 1.0)
+        own_radius = hairs.radius / np.sqrt(np.maximum(family_values("count")[lock], 1.0))
+        share = np.clip(1.0 - family_values("radius")[lock] / np.maximum(own_radius, 1e-9), 0.0, 1.0)
         assert isinstance(family_values.settings, Families)
-        layout["family"] = (family_values("amount")[lock] * share * hairs.radius)[:, None] * to
-        layout["tight"] = family_values.settings.amount.along(u)
+        layout["family"] = (family_values("tightness")[lock] * share * hairs.radius)[:, None] * to
+        layout["tight"] = family_values.settings.tightness.along(u)
         noise = 2.0 * Random(family_values.seed, "hairs/families/noise").uniforms(family, 2 * knots) - 1.0
         wander = family_values("noise")[lock, None] * noise * np.linspace(0.0, 1.0, knots).repeat(2)
     if curl_values is not None:
@@ -188,17 +188,17 @@ def _slips(values: Values, hairs: Placed, family: NDArray, knots: int) -> NDArra
         steps[np.arange(len(ids)), at] += slips * values("slip")[hairs.lock]
         return np.concatenate([np.zeros((len(ids), 1)), np.cumsum(steps, axis=1)], axis=1)
 
-    alike = values("alike")[hairs.lock, None]
-    return alike * phases(family, "family") + (1.0 - alike) * phases(hairs.ids, "hair")
+    coherence = values("coherence")[hairs.lock, None]
+    return coherence * phases(family, "family") + (1.0 - coherence) * phases(hairs.ids, "hair")
 
 
 def _coils(values: Values, hairs: Placed, family: NDArray, knots: int) -> tuple[NDArray, NDArray, NDArray]:
     """Coil of each hair: radius times its direction [m], turns per metre of lock, kink; wander of its phase at knots
     [turns per metre], and the phase at the root [turns]."""
-    lock, alike = hairs.lock, values("alike")[hairs.lock]
+    lock, coherence = hairs.lock, values("coherence")[hairs.lock]
 
     def shared(own: NDArray, of_family: NDArray) -> NDArray[np.float64]:
-        weight = alike.reshape(-1, *[1] * (own.ndim - 1))
+        weight = coherence.reshape(-1, *[1] * (own.ndim - 1))
         return weight * of_family + (1.0 - weight) * own
 
     def of_both(purpose: str, columns: int) -> NDArray[np.float64]:
@@ -210,7 +210,7 @@ def _coils(values: Values, hairs: Placed, family: NDArray, knots: int) -> tuple[
     angle = 2.0 * np.pi * start[:, 1]
     radius = 0.5 * values.per_hair("width", lock, hairs.ids)
     hand = np.where(
-        Random(values.seed, "hairs/coil/hand").uniform(np.where(alike > 0.5, family, hairs.ids)) < 0.5, -1, 1
+        Random(values.seed, "hairs/coil/hand").uniform(np.where(coherence > 0.5, family, hairs.ids)) < 0.5, -1, 1
     )
     wander = (values("irregularity")[lock] * turns / (knots - 1))[:, None]
     phase = np.cumsum(wander * (2.0 * of_both("wander", knots) - 1.0), axis=1)

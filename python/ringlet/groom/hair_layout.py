@@ -52,9 +52,9 @@ def place_hairs(groom: Groom, settings: HairSettings, fraction: float, wider: bo
     number = made - (np.cumsum(full_count) - full_count)[lock]
     ids = locks.ids[lock] * IDS_PER_LOCK + number
     disk = _disk(settings, ids, number, full_count[lock])
-    hairs = Placed(ids, lock, _cross_section(own, lock, disk), lock_radii(locks, own("radius"))[lock], number > 0)
+    hairs = Placed(ids, lock, _cross_section(own, lock, disk), lock_radii(locks, own("lock_radius"))[lock], number > 0)
 
-    spread = np.maximum(own("spread"), np.sqrt(areas / np.pi))
+    spread = np.maximum(own("root_radius"), np.sqrt(areas / np.pi))
     places = roots[lock] + spread[lock, None] * np.einsum("hxk,hk->hx", frames[lock][:, :, :2], disk)
     joins = lock_joins(locks)[lock]
     _root_in_rows(groom, settings, first, number, places, joins)
@@ -187,7 +187,7 @@ def _layout(settings: HairSettings, per_lock: Values, hairs: Placed, u: NDArray)
     random, lock, ids, free = Random(settings.seed, "hairs"), hairs.lock, hairs.ids, hairs.free
     tip = 1.0 - per_lock("shorter")[lock] * free * random.uniform(ids, 0) ** 2
     strays = soft_threshold(per_lock("stray")[lock], random.uniform(ids, 1))
-    frizz, stray = per_lock("frizz")[lock], per_lock("stray_radius")[lock]
+    frizz, stray = per_lock("frizz")[lock], per_lock("stray_distance")[lock]
     amplitude = (frizz + strays * (stray - frizz)) * free
     edges = (_is_laid(per_lock.locks) & ~_is_row(per_lock.locks))[lock]
     amplitude = np.where(
@@ -203,9 +203,9 @@ def _layout(settings: HairSettings, per_lock: Values, hairs: Placed, u: NDArray)
         "offset": (hairs.radius[:, None] * hairs.disk).astype(np.float32),
         "tip": tip.astype(np.float32),
         "flat": (_is_shared(per_lock.locks)[lock] & free).astype(np.float32),
-        "taper": per_lock("taper")[lock].astype(np.float32),
+        "taper": per_lock("lock_taper")[lock].astype(np.float32),
         "frizz": knots.astype(np.float32),
-        "profile": settings.radius.along(u).astype(np.float32),
+        "profile": settings.lock_radius.along(u).astype(np.float32),
         "hold": (t * t * (3.0 - 2.0 * t)).astype(np.float32),
         "pace": _pace(u, settings.gather).astype(np.float32),
     }
@@ -222,7 +222,7 @@ def _pace(u: NDArray, gather: float) -> NDArray[np.float64]:
 def _felted(settings: HairSettings, per_lock: Values, hairs: Placed, frizz: NDArray) -> NDArray[np.float32]:
     """Knots of hairs with the thickness and the matting of their locks, shape (hairs, 2 · felt.KNOTS)."""
     u = np.linspace(0.0, 1.0, felt.KNOTS)
-    narrows = settings.radius.along(u) * (1.0 - per_lock("taper")[:, None] * u)
+    narrows = settings.lock_radius.along(u) * (1.0 - per_lock("lock_taper")[:, None] * u)
     radius = hairs.radius[:, None] * narrows[hairs.lock]
     return felt.felted(per_lock.locks, hairs.lock, hairs.ids, hairs.disk, radius, frizz, settings.seed).astype(
         np.float32
@@ -250,14 +250,14 @@ def _cross_section(per_lock: Values, lock: NDArray, disk: NDArray) -> NDArray[np
     disk = disk * (np.maximum(radius, 1e-9) ** -np.minimum(per_lock("hollow"), 1.0)[lock])[:, None]
     angle = np.pi * Random(per_lock.seed, "hairs/ribbon").uniform(per_lock.locks.ids)[lock]
     thin = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    pressed = np.minimum(per_lock("flatness"), 1.0)[lock] * np.sum(disk * thin, axis=1)
+    pressed = np.minimum(per_lock("lock_flatness"), 1.0)[lock] * np.sum(disk * thin, axis=1)
     return disk - pressed[:, None] * thin
 
 
 def _neighbours(
     settings: HairSettings, per_lock: Values, curves: Curves, hairs: Placed, roots: NDArray, u: NDArray
 ) -> dict[str, NDArray]:
-    """Neighbouring lock that each hair blends with, and the blend weight: one half midway, 0 across a parting."""
+    """Neighbouring lock that each hair blends with, and the blend weight: one half midway, 0 across a part line."""
     blend = settings.blend.along(u).astype(np.float32)
     locks, scalp, lock, amount = per_lock.locks, per_lock.scalp, hairs.lock, per_lock("blend")
     if not amount.any() or len(locks) < 2:

@@ -61,7 +61,7 @@ def lock_thickness(groom: Groom) -> float:
     """Largest diameter of a lock with its hairs [m], but for chance and maps."""
     if groom.grooms:
         return max(lock_thickness(one) for one in grooms_of(groom).values())
-    radius = hair_settings(groom).radius
+    radius = hair_settings(groom).lock_radius
     largest = max([radius.value, *radius.region.values(), *radius.lock.values()])
     thickness = lock_radii(groom.locks, np.full(len(groom.locks), largest)) * felt.most_thick(groom.locks)
     return 2.0 * float(thickness.max(initial=0.0)) * radius.peak

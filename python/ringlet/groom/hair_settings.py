@@ -40,20 +40,20 @@ class HairSettings(Section):
     points: int | None = Field(
         default=None, ge=2, le=10_000, description="points of a hair; those of the lock when absent"
     )
-    radius: Annotated[Ramped, Quantity("m", 0.0, 0.1)] = Field(
+    lock_radius: Annotated[Ramped, Quantity("m", 0.0, 0.1)] = Field(
         default=Ramped(value=0.0012, ramp=[(0, 1), (0.5, 0.8), (1, 0.5)]),
         description="radius of a lock's cross-section",
     )
-    taper: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
+    lock_taper: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
         default=Varied(value=0.0), description="how much narrower a lock gets towards its tip besides: 1 to a point"
     )
-    flatness: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
+    lock_flatness: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
         default=Varied(value=0.0), description="cross-section of a lock: 0 round, 1 a flat ribbon"
     )
     hollow: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
         default=Varied(value=0.0), description="where hairs are in it: 0 everywhere, 1 at the rim"
     )
-    spread: Annotated[Varied, Quantity("m", 0.0, 0.1)] = Field(
+    root_radius: Annotated[Varied, Quantity("m", 0.0, 0.1)] = Field(
         default=Varied(value=0.003),
         description="radius on the scalp that a lock's roots cover; those of a section's strand cover its share of the "
         "section, and lie flat up to where it grows",
@@ -73,7 +73,7 @@ class HairSettings(Section):
     stray: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
         default=Varied(value=0.04), description="part of the hairs that leave their lock"
     )
-    stray_radius: Annotated[Varied, Quantity("m", 0.0, 0.1)] = Field(
+    stray_distance: Annotated[Varied, Quantity("m", 0.0, 0.1)] = Field(
         default=Varied(value=0.004), description="how far those wander"
     )
     blend: Annotated[Ramped, Quantity("", 0.0, 1.0)] = Field(
@@ -81,7 +81,7 @@ class HairSettings(Section):
         description="how far hairs between two locks mix both: 0 each follows its own; mixed curls get narrower",
     )
     apart: Annotated[float, Quantity("deg", 1.0, 180.0)] = Field(
-        default=60.0, description="locks that lean further apart than this, as across a parting, are not mixed"
+        default=60.0, description="locks that lean further apart than this, as across a part line, are not mixed"
     )
     families: Families | None = Field(default=None, description="sub-clumps of each lock; none when absent")
     curl: HairCurl | None = Field(
@@ -130,6 +130,6 @@ def hair_values(groom: Groom, settings: HairSettings) -> dict[str, Values]:
 
 
 def lock_radii(locks: Curves, radius: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Radius of each lock [m], shape (locks,): its own, as that of a braid's strand, or the setting's ``radius``."""
+    """Radius of each lock [m], shape (locks,): its own, as that of a strand of a braid, or the ``lock_radius``."""
     own = locks.curve.get(STRAND_RADIUS, np.zeros(len(locks)))
     return np.where(own > 0.0, own, radius)

@@ -8,7 +8,7 @@ from typing import Any
 
 from ringlet.data.errors import UserError
 from ringlet.data.explain import did_you_mean, shown
-from ringlet.data.settings import parse_toml, read_toml
+from ringlet.data.settings import FORMAT, parse_toml, read_toml
 from ringlet.data.toml import to_toml
 from ringlet.groom.named import GROOMS, with_grooms, within_groom
 
@@ -17,6 +17,7 @@ MOST_NAME = 255  # bytes of the name of a file or a folder
 APPEND = "append"  # key of a variant's operators that follow those of its base
 MAY_BE_FALSE = ("guides.whorl",)  # settings whose value may be `false`, which then does not remove them
 LOCK_TABLES = ("curl", "hairs", "color")  # tables, operators aside, whose settings single locks may have
+EMPTY = f"ringlet = {FORMAT}\n"  # a file of edits without edits
 EDITS = ("edit", "sculpt")  # tables of a file of edits: edits of locks, edits of guides
 
 
@@ -93,7 +94,7 @@ def _edited(data: dict[str, Any], path: Path, edits: str | None) -> dict[str, An
 
 def read_edits(path: Path) -> dict[str, list[dict[str, Any]]]:
     """Edits of locks (``edit``) and of guides (``sculpt``) of a file; empty when the file does not exist."""
-    return parse_edits(read_toml(path, "file of edits")[0] if path.exists() else "ringlet = 1", path)
+    return parse_edits(read_toml(path, "file of edits")[0] if path.exists() else EMPTY, path)
 
 
 def parse_edits(text: str, path: Path) -> dict[str, list[dict[str, Any]]]:

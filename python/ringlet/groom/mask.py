@@ -26,8 +26,8 @@ class Mask(Section):
     ramp: Ramp = Field(default=[(0.0, 1.0), (1.0, 1.0)], description="[place, factor] from root (0) to tip (1)")
     map: str | None = Field(default=None, description="painted values, of the locks or of the scalp at their roots")
     region: str | None = Field(default=None, description="a named region of the scalp")
-    soft: Annotated[float, Quantity("m", 0.0, 1.0)] = Field(
-        default=0.0, description="distance beyond the region over which it fades out"
+    falloff: Annotated[float, Quantity("m", 0.0, 1.0)] = Field(
+        default=0.0, description="distance beyond the region over which it falls off"
     )
     where: Annotated[str, AfterValidator(expression.check)] | None = Field(
         default=None,
@@ -95,12 +95,12 @@ class Mask(Section):
         return values
 
     def _region_falloff(self, triangles: NDArray[np.int32], curves: Curves, scalp: Mesh) -> NDArray[np.float64]:
-        """Falloff of a region: 1 inside, 0 farther than ``soft`` from it, smooth between; shape (count,)."""
+        """Falloff of a region: 1 inside, 0 farther than ``falloff`` from it, smooth between; shape (count,)."""
         inside = np.isin(curves.curve["root_triangle"], triangles)
-        if self.soft == 0.0 or inside.all() or not len(triangles):
+        if self.falloff == 0.0 or inside.all() or not len(triangles):
             return inside.astype(np.float64)
         roots = np.ascontiguousarray(curves.roots, np.float64)
         points = np.ascontiguousarray(scalp.points, np.float64)
         distance = _core.bind_roots(points, np.ascontiguousarray(scalp.triangles, np.int32), roots, triangles)[2]
-        t = np.where(inside, 1.0, np.clip(1.0 - distance / self.soft, 0.0, 1.0))
+        t = np.where(inside, 1.0, np.clip(1.0 - distance / self.falloff, 0.0, 1.0))
         return t * t * (3.0 - 2.0 * t)

@@ -10,7 +10,7 @@ from ringlet.data.errors import UserError
 from ringlet.data.explain import shown
 
 GROOMS = "grooms"
-OF_ALL = ("ringlet", "name", "seed", "unit", "scalp", "maps", "curves", "clean", "hairs", "color", "fiber")
+OF_ALL = ("ringlet", "name", "seed", "unit", "scalp", "maps", "curves", "collide", "hairs", "color", "fiber")
 NAME = re.compile(r"[A-Za-z]\w*", re.ASCII)  # a name that USD accepts for a prim
 MOST_GROOMS = 64
 

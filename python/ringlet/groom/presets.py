@@ -16,7 +16,7 @@ PRESETS: dict[str, dict[str, Any]] = {
         "start": "30 mm",
         "irregularity": 0.6,
         "flatness": 0.5,
-        "phase_alike": 0.3,
+        "phase_coherence": 0.3,
     },
     "2A": {
         "width": {"value": "9 mm", "vary": 0.3, "ramp": [(0, 0.3), (0.5, 1), (1, 1)]},
@@ -24,7 +24,7 @@ PRESETS: dict[str, dict[str, Any]] = {
         "start": "40 mm",
         "irregularity": 0.3,
         "flatness": 0.75,
-        "phase_alike": 0.8,
+        "phase_coherence": 0.8,
     },
     "2B": {
         "width": {"value": "13 mm", "vary": 0.25, "ramp": [(0, 0.4), (0.4, 1), (1, 1)]},
@@ -32,7 +32,7 @@ PRESETS: dict[str, dict[str, Any]] = {
         "start": "30 mm",
         "irregularity": 0.3,
         "flatness": 0.65,
-        "phase_alike": 0.7,
+        "phase_coherence": 0.7,
     },
     "2C": {
         "width": {"value": "17 mm", "vary": 0.25, "ramp": [(0, 0.5), (0.4, 1), (1, 0.95)]},
@@ -40,7 +40,7 @@ PRESETS: dict[str, dict[str, Any]] = {
         "start": "25 mm",
         "irregularity": 0.3,
         "flatness": 0.45,
-        "phase_alike": 0.5,
+        "phase_coherence": 0.5,
         "skips": 0.3,
     },
     "3A": {
@@ -49,7 +49,7 @@ PRESETS: dict[str, dict[str, Any]] = {
         "start": "25 mm",
         "irregularity": 0.25,
         "flatness": 0.1,
-        "phase_alike": 0.3,
+        "phase_coherence": 0.3,
         "skips": 0.2,
     },
     "3B": {

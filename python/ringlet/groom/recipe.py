@@ -16,9 +16,9 @@ from ringlet.groom.hair_settings import HairSettings
 from ringlet.groom.helper_mesh import HelperMesh
 from ringlet.groom.helpers import HelperCurves
 from ringlet.groom.load import load, load_text, resolved_text
-from ringlet.groom.nails import Nail
 from ringlet.groom.named import GROOMS
-from ringlet.groom.operators import Clean, Curl, Drawn, Grown, Locks, ShapeOperator
+from ringlet.groom.operators import Collide, Curl, Drawn, Grown, Locks, ShapeOperator
+from ringlet.groom.pins import Pin
 from ringlet.groom.sculpt import Sculpt
 from ringlet.groom.source import Source
 
@@ -55,7 +55,7 @@ def _kind_of_guides(data: Any) -> str:
 class Recipe(Section):
     """A groom from guides to hairs. Inside, lengths are in metres."""
 
-    ringlet: Literal[1] = Field(description="version of this format")
+    ringlet: Literal[2] = Field(description="version of this format")
     name: str = Field(default="", description="what the groom is called")
     seed: int = Field(default=1, ge=0, le=2**31, description="another seed gives another head of hair of the same kind")
     unit: LengthUnit = Field(default="cm", description="unit of lengths that are plain numbers")
@@ -85,8 +85,8 @@ class Recipe(Section):
     shape: list[ShapeOperator] = Field(default=[], description="operators on the shape of the locks, in order")
     curl: Curl | None = Field(default=None, description="the curl; straight hair when absent")
     edit: list[Edit] = Field(default=[], description="what was done to single locks by hand")
-    nail: list[Nail] = Field(default=[], description="hair that is held to the skin")
-    clean: Clean = Field(default=Clean(), description="keeping out of the head and of what is worn")
+    pin: list[Pin] = Field(default=[], description="hair that is held to the skin")
+    collide: Collide = Field(default=Collide(), description="keeping out of the head and of what is worn")
     hairs: HairSettings = Field(default=HairSettings(), description="the hairs of each lock")
     color: ColorSettings | None = Field(default=None, description="colour of the hair; files have none when absent")
     fiber: FiberSettings | None = Field(

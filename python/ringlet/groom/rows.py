@@ -81,7 +81,7 @@ def drawn_rows(curves: Curves, division: Division, scalp: Scalp, what: str) -> d
         if name in rows:
             raise UserError(
                 f"{what}: curve {curves.ids[k]} runs in section {name}, as another one does; "
-                "draw a parting between them, or remove one"
+                "draw a part line between them, or remove one"
             )
         rows[name] = row
     return rows

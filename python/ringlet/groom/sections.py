@@ -1,4 +1,4 @@
-"""Sections of the scalp: the parts between partings, from each of which a braid, a twist or a loose strand grows."""
+"""Sections of the scalp: the parts between part lines, from each of which a braid, a twist or a loose strand grows."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ringlet.data.curves import Curves
 from ringlet.data.groom import SECTION
 from ringlet.data.quantities import Quantity, Section, refuse
 from ringlet.data.random import Random
-from ringlet.groom.drawn_partings import DrawnPartings
+from ringlet.groom.drawn_part_lines import DrawnPartLines
 from ringlet.groom.mask import Mask
 from ringlet.groom.scalp import Scalp
 
@@ -38,21 +38,21 @@ class Sections(Section):
     pattern: Literal["grid", "brick", "rows", "triangles", "radial", "drawn"] = Field(
         default="brick",
         description="squares, squares in bond, rows from front to back, triangles, rings, or what lies between drawn "
-        "`partings`",
+        "`part_lines`",
     )
-    partings: str | None = Field(
+    part_lines: str | None = Field(
         default=None,
-        description="name of helper curves along the partings of the pattern `drawn`, from `[curves]`; they are "
+        description="name of helper curves along the part lines of the pattern `drawn`, from `[curves]`; they are "
         "projected on the scalp, and a quarter of the size longer at their ends",
     )
     size: Annotated[float, Quantity("m", 2e-3, 1.0)] = Field(
         default=0.025, description="width of a section; of drawn ones, about that of the smallest"
     )
     gap: Annotated[float, Quantity("m", 0.0, 0.1)] = Field(
-        default=0.002, description="width of the visible parting between sections, where nothing grows"
+        default=0.002, description="width of the visible part line between sections, where nothing grows"
     )
     jitter: Annotated[float, Quantity("", 0.0, 1.0)] = Field(
-        default=0.0, description="how much partings wander, as a part of the size"
+        default=0.0, description="how much part lines wander, as a part of the size"
     )
     turn: Annotated[float, Quantity("deg", -180.0, 180.0)] = Field(default=0.0, description="turns the pattern")
     strands: int | None = Field(
@@ -67,9 +67,9 @@ class Sections(Section):
     )
 
     @model_validator(mode="after")
-    def _has_partings(self) -> Sections:
-        if (self.pattern == "drawn") != (self.partings is not None):
-            raise refuse("needs both pattern = 'drawn' and 'partings', or none of them; name curves of [curves]")
+    def _has_part_lines(self) -> Sections:
+        if (self.pattern == "drawn") != (self.part_lines is not None):
+            raise refuse("needs both pattern = 'drawn' and 'part_lines', or none of them; name curves of [curves]")
         return self
 
     def divide(self, scalp: Scalp, seed: int, helper: Callable[[str, str], Curves]) -> Division:
@@ -78,10 +78,10 @@ class Sections(Section):
         _, triangle, barycentric = scalp.sample(scalp.count_for_spacing(self.size / SAMPLES_A_SIDE), seed)
         places = scalp.positions(triangle, barycentric)
         drawn = None
-        if self.partings is not None:
-            curves = helper(self.partings, "sections.partings")
+        if self.part_lines is not None:
+            curves = helper(self.part_lines, "sections.part_lines")
             lines = [chart.flat(np.asarray(curves[k], np.float64)) for k in range(len(curves))]
-            drawn = DrawnPartings(lines, chart.flat(places), self.size)
+            drawn = DrawnPartLines(lines, chart.flat(places), self.size)
         cells = self._cells(chart, places, seed, drawn)
         merged = Merged(cells.key, places, 0.0 if drawn else WHOLE)
         ids, section = np.unique(merged.sections(cells.key, places), return_inverse=True)
@@ -92,7 +92,7 @@ class Sections(Section):
         chosen = self.mask.weights(roots, scalp.mesh, Random(seed, "locks/sections"), "locks.sections.mask")[:, 0] > 0.5
         return Division(self, chart, seed, merged, roots, chosen, drawn)
 
-    def _cells(self, chart: Chart, places: NDArray, seed: int, drawn: DrawnPartings | None) -> Cells:
+    def _cells(self, chart: Chart, places: NDArray, seed: int, drawn: DrawnPartLines | None) -> Cells:
         """The pattern's cells at places (n, 3) [m]."""
         if drawn is not None:
             name, at, edge = drawn.at(chart.flat(places))
@@ -201,7 +201,7 @@ class Division:
     merged: Merged
     roots: Curves
     chosen: NDArray[np.bool_]
-    drawn: DrawnPartings | None = None
+    drawn: DrawnPartLines | None = None
 
     def at(self, places: NDArray) -> dict[str, NDArray]:
         """Attributes of places (n, 3) [m] in their sections, shape (n,) each; section −1 where the mask has none."""
@@ -216,7 +216,7 @@ class Division:
         }
 
     def grows(self, at: dict[str, NDArray]) -> NDArray[np.bool_]:
-        """Whether loose hair grows at such places: in no parting, and in no section that has strands."""
+        """Whether loose hair grows at such places: on no part line, and in no section that has strands."""
         outside = at[SECTION] < 0
         return outside | ((at[EDGE] >= 0.5 * self.sections.gap) & (self.sections.strands is None))
 

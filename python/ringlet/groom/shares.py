@@ -35,7 +35,7 @@ def reaches(
 ) -> NDArray[np.float32]:
     """``REACH`` of the strands of sections, for their roots, shape (n,), and sections, shape (n,), in order.
 
-    The share of a strand is the part of its section, without the parting, that is nearest to its root. It should be
+    The share of a strand is the part of its section, without the part line, that is nearest to its root. It should be
     star-shaped about the root.
     """
     if not len(triangle):

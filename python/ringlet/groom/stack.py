@@ -1,4 +1,4 @@
-"""The operator stack: guides → locks → shape → curl → clean, each stage a pure function of the one before."""
+"""The operator stack: guides → locks → shape → curl → collide, each stage a pure function of the one before."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ from ringlet.groom.hair_measures import raise_density
 from ringlet.groom.hair_settings import HairSettings
 from ringlet.groom.hairs import HairMemory
 from ringlet.groom.load import stage_names
-from ringlet.groom.nails import nailed
-from ringlet.groom.operators import Context, Drawn, Operator, Resample, Tie
+from ringlet.groom.operators import Context, Drawn, Operator, Resample
 from ringlet.groom.operators.operator import arc_lengths, grid, unit
 from ringlet.groom.operators.shape import Displacement, Shape
 from ringlet.groom.operators.tied import TO_TIE
+from ringlet.groom.pins import pinned
 from ringlet.groom.recipe import Recipe
 from ringlet.groom.scalp import Scalp
 from ringlet.groom.sculpt import Sculpted
@@ -121,7 +121,7 @@ def make_groom(
             key = _key(key, name.encode(), mesh.points.tobytes(), mesh.triangles.tobytes())
         curves = drawn_guides or Curves.from_list([])
         stages = _stages(recipe, OFFSETS in curves.curve)
-        guides, unsculpted, shapes, uncleaned = curves, curves, None, curves
+        guides, unsculpted, shapes, before_contact = curves, curves, None, curves
         lengthened: list[str] = []
         worn: list[Worn] = []
         for name, operator in stages:
@@ -129,8 +129,8 @@ def make_groom(
                 progress(name, 0, 1)
             if name == "curl":
                 shapes = curves
-            if name == "clean":
-                uncleaned = curves
+            if name == "collide":
+                before_contact = curves
             context = Context(
                 recipe.seed, surface, name, recipe.locks.points, helpers, meshes, shapes, recipe.locks.sections
             )
@@ -147,7 +147,7 @@ def make_groom(
                 guides = curves
             if progress:
                 progress(name, 1, 1)
-        locks = _with_textures_of_hairs(nailed(curves, recipe.nail, scalp, recipe.seed), recipe.hairs, scalp)
+        locks = _with_textures_of_hairs(pinned(curves, recipe.pin, scalp, recipe.seed), recipe.hairs, scalp)
         locks = colored(locks, recipe.color, recipe.fiber, scalp)
         locks = loaded(worn, _with_mask_of_hairs(locks, recipe, scalp))
     except UserError as error:
@@ -175,9 +175,8 @@ def make_groom(
             *_conflicts(recipe, unsculpted, curves),
             *_odd_size(scalp, recipe.scalp.region),
             *lengthened,
-            *_inward(uncleaned, surface),
+            *_inward(before_contact, surface),
             *_not_strands(curves),
-            *_former_names(recipe),
         ],
     )
     if recipe.hairs.cover is not None:
@@ -235,7 +234,7 @@ def _stages(recipe: Recipe, adopted: bool = False) -> list[tuple[str, Operator]]
         stages.append(("residual", Residual(amount=recipe.guides.residual)))
     if by_stage["groom"]:
         stages.append(("edits", Edits(edits=by_stage["groom"])))
-    stages.append(("clean", recipe.clean))
+    stages.append(("collide", recipe.collide))
     return stages
 
 
@@ -274,8 +273,8 @@ def _lengthened(name: str, before: Curves, after: Curves) -> Iterator[str]:
         lock = int(np.argmax(now / was))
         yield (
             f"{name} makes {much.sum()} of {len(was)} locks more than {MUCH_LONGER:g} times as long, lock "
-            f"{after.ids[lock]} {now[lock]:.3g} instead of {was[lock]:.3g} m; lower its amount, raise its size, or "
-            "give it keep = 'length'"
+            f"{after.ids[lock]} {now[lock]:.3g} instead of {was[lock]:.3g} m; lower its magnitude, raise its "
+            "wavelength, or give it keep = 'length'"
         )
 
 
@@ -306,12 +305,6 @@ def _not_strands(locks: Curves) -> Iterator[str]:
         locks.check_strands("locks")
     except UserError as error:
         yield f"{error}; as it is, the groom cannot be simulated"
-
-
-def _former_names(recipe: Recipe) -> Iterator[str]:
-    """A message for operators under their former names."""
-    if any(isinstance(operator, Tie) and operator.op == "gather" for operator in recipe.shape):
-        yield "the operator gather is now called tie, and its setting tie is curve; gather is still read"
 
 
 def _run(operator: Operator, curves: Curves, key: str, context: Context, memory: Memory) -> tuple[Curves, str]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ringlet.data.curves import Curves
 from ringlet.rest.rod_strains import corners, edges, twists
-from ringlet.sim.nails import rigid_elements
+from ringlet.sim.hair_pins import rigid_elements
 from ringlet.sim.strands import Strands
 
 Array = NDArray[np.float64]
@@ -22,7 +22,7 @@ ARM = 0.01  # a couple of 1 is one newton on this arm [m]
 
 
 class Compliance:
-    """Locks as beams: edges stretch, bend and twist; what is held near the root or between nails is rigid.
+    """Locks as beams: edges stretch, bend and twist; what is held near the root or between pins is rigid.
 
     held: vertices of each lock that are held from its root
     """

@@ -1,4 +1,4 @@
-"""Support forces: how nails, bodies and other locks share the weight of a groom.
+"""Support forces: how pins, bodies and other locks share the weight of a groom.
 
 Statics alone does not determine them. Of all forces that carry the loads, an elastic body takes those of least strain
 energy; to first order, these act when locks remember the groom and are released. Contacts only push, and friction is
@@ -29,7 +29,7 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 CONTACT_PENALTY = 0.1  # of a contact that carries the lock's whole weight, per strain energy under the loads
-NAIL_PENALTY = 1e-6  # the same of nails, which may pull as hard as they must
+PIN_PENALTY = 1e-6  # the same of pins, which may pull as hard as they must
 FRICTION_FRACTION = 0.1  # of Coulomb's friction that support counts on
 
 
@@ -58,12 +58,12 @@ def contact_support(shot: Shot, locks: Curves, strands: Strands, loads: Array, o
     loads:   what pulls at them besides [N], shape (n, 3)
     """
     forces, contact = np.zeros_like(loads), shot.touching
-    of_nails = _nail_forces(shot.held, locks, np.asarray(strands.held))
+    of_pins = _pin_forces(shot.held, locks, np.asarray(strands.held))
     of_contacts = None
     if contact is not None:
         contacts = resting_contacts(contact, locks, strands, obstacles)
         of_contacts = _contact_forces(contacts, FRICTION_FRACTION * _friction(contact, obstacles)[0, contacts.body])
-    unit = of_nails if of_contacts is None else _joined(of_nails, of_contacts)
+    unit = of_pins if of_contacts is None else _joined(of_pins, of_contacts)
     if unit.free.size:
         amounts = _least_energy(unit, shot.held, locks, strands, loads)
         np.add.at(forces, unit.vertex, amounts[unit.of, None] * unit.force)
@@ -80,12 +80,12 @@ def _joined(one: UnitForces, other: UnitForces) -> UnitForces:
     )
 
 
-def _nail_forces(from_root: int, locks: Curves, held: NDArray[np.bool_]) -> UnitForces:
-    """Nails hold in every direction; a row of them is clamped, and its first two stand for all of it."""
+def _pin_forces(from_root: int, locks: Curves, held: NDArray[np.bool_]) -> UnitForces:
+    """Pins hold in every direction; a row of them is clamped, and its first two stand for all of it."""
     number = np.arange(len(held)) - np.repeat(locks.offsets[:-1], locks.counts)
-    nailed = held & (number >= from_root)
-    first = nailed & ~np.append(False, held[:-1])
-    second = np.append(False, first[:-1]) & nailed
+    pinned = held & (number >= from_root)
+    first = pinned & ~np.append(False, held[:-1])
+    second = np.append(False, first[:-1]) & pinned
     vertex, clamped = np.flatnonzero(first | second), np.flatnonzero(second) - 1
     forces, couples = 3 * len(vertex), len(clamped)
     return UnitForces(
@@ -132,7 +132,7 @@ def _least_energy(unit: UnitForces, held: int, locks: Curves, strands: Strands, 
     of_loads = compliance.wrenches(np.arange(len(loads)), loads)
     of_units = compliance.wrenches(unit.vertex, unit.force, unit.couple)
     weight = np.maximum(np.add.reduceat(np.linalg.norm(loads, axis=1), locks.offsets[:-1]), 1e-300)
-    penalty = np.where(unit.free, NAIL_PENALTY, CONTACT_PENALTY)
+    penalty = np.where(unit.free, PIN_PENALTY, CONTACT_PENALTY)
     row, column, entries, gradient = [], [], [], np.zeros(count)
     lock = np.searchsorted(locks.offsets, unit.vertex, side="right") - 1
     order = np.argsort(lock, kind="stable")

@@ -23,8 +23,8 @@ from ringlet.rest.loft import Loft, Progress, largest_per_lock
 from ringlet.rest.preload import STILL, hang_groom
 from ringlet.shot.shot import Shot
 from ringlet.shot.variation import Mapped
+from ringlet.sim.hair_pins import spring_fraction
 from ringlet.sim.motion import make_strands
-from ringlet.sim.nails import spring_fraction
 from ringlet.sim.obstacle import Obstacle
 from ringlet.sim.strands import Strands
 
@@ -79,7 +79,7 @@ def equilibrium(
     strands, most = make_strands(shot, groom), shot.rest.stiffen
     frames = strands.directors.copy() if frames is None else frames
     support = support_forces(shot, groom, obstacles, strands) if support is None else support
-    carried = support + _nail_springs(shot, groom, strands)
+    carried = support + _pin_springs(shot, groom, strands)
     pending, soft, factor = np.ones(len(locks), bool), np.zeros(len(locks), bool), np.ones(len(locks))
     made = _empty_loft(groom, support)
 
@@ -110,17 +110,17 @@ def equilibrium(
 
 
 def support_forces(shot: Shot, groom: Groom, obstacles: Sequence[Obstacle], strands: Strands | None = None) -> Array:
-    """The forces of bodies, nails and other locks that support a groom [N], shape (n, 3).
+    """The forces of bodies, pins and other locks that support a groom [N], shape (n, 3).
 
     strands: its locks, as ``contact_support`` takes them; by default they are made
     """
     strands = make_strands(shot, groom) if strands is None else strands
-    loads = external_loads(shot, strands) + _nail_springs(shot, groom, strands)
+    loads = external_loads(shot, strands) + _pin_springs(shot, groom, strands)
     return contact_support(shot, groom.locks, strands, loads, obstacles)
 
 
-def _nail_springs(shot: Shot, groom: Groom, strands: Strands) -> Array:
-    """The share of the weight that soft nails carry [N], shape (n, 3)."""
+def _pin_springs(shot: Shot, groom: Groom, strands: Strands) -> Array:
+    """The share of the weight that soft pins carry [N], shape (n, 3)."""
     share = spring_fraction(groom.locks, 1.0 / (groom.space.fps * shot.solver.substeps))
     return -np.outer(share * strands.masses, shot.forces.gravity)
 

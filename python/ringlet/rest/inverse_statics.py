@@ -24,8 +24,8 @@ from ringlet.data.groom import Groom
 from ringlet.rest.loft import largest_per_lock
 from ringlet.rest.rod_strains import RodStrains, measure_strains, shape_of_strains
 from ringlet.shot.shot import Shot
+from ringlet.sim.hair_pins import rigid_elements
 from ringlet.sim.motion import make_strands
-from ringlet.sim.nails import rigid_elements
 from ringlet.sim.strands import Strands
 
 Array = NDArray[np.float64]
@@ -43,7 +43,7 @@ def internal_forces(
     points, directors: where the strands are in equilibrium [m] and their directors, shapes (n, 3)
     loads:             the force on each vertex [N], shape (n, 3)
     held:              vertices of each strand that are held from its root; at least three, which hold its frame
-    twisting:          moments that turn the director of each edge besides, as nails do [N m], shape (n,)
+    twisting:          moments that turn the director of each edge besides, as pins do [N m], shape (n,)
     Exact, whatever the shape and the stiffness. Between held vertices forces are undetermined, and zero here.
     """
     twisting = np.zeros(len(points)) if twisting is None else twisting
@@ -79,7 +79,7 @@ def balanced_rest_shape(
         strands = make_strands(shot, part, part.locks.with_points(rest[rows]), stiffened[going])
         loads = external_loads(shot, strands) + support[rows]
         balance = partial(internal_forces, part.locks, groomed[rows], frames[rows], loads, shot.held)
-        now = _strain_between_nails(strands, balance)
+        now = _strain_between_pins(strands, balance)
         at_rest = groomed_strains.take(rows).plus(now, -1.0)
         rest[rows], _ = shape_of_strains(part.locks, at_rest, frames[rows])
         size, change, sharpest = (
@@ -107,26 +107,26 @@ def _strain(strands: Strands, forces: RodStrains) -> RodStrains:
     return RodStrains(forces.length / stretch, forces.bend / bend[:, None], forces.twist / twist)
 
 
-def _strain_between_nails(strands: Strands, balance: Callable[[Array], RodStrains]) -> RodStrains:
-    """The strains that balance the loads, with moments at nails that keep the directors of nailed edges.
+def _strain_between_pins(strands: Strands, balance: Callable[[Array], RodStrains]) -> RodStrains:
+    """The strains that balance the loads, with moments at pins that keep the directors of pinned edges.
 
-    The director of an edge between nails is where the twists at rest lead from the root. It is the groomed one if the
-    strains of twist cancel from the root to the nail, and these are linear in the moments at the nails.
+    The director of an edge between pins is where the twists at rest lead from the root. It is the groomed one if the
+    strains of twist cancel from the root to the pin, and these are linear in the moments at the pins.
 
     balance: the internal forces for further moments on the edges' directors [N m], shape (n,)
     """
     locks, stiffness = strands.curves, strands.stiffness[2]
     moments = np.zeros(len(stiffness))
     strain = _strain(strands, balance(moments))
-    nailed = _first_nailed(strands)
-    if not nailed.any():
+    pinned = _first_pinned(strands)
+    if not pinned.any():
         return strain
-    lock, which = np.searchsorted(locks.offsets, np.flatnonzero(nailed), side="right") - 1, np.cumsum(nailed)
-    which = (which - np.append(0, which)[locks.offsets[:-1]].repeat(locks.counts))[nailed] - 1
-    edge, rows = np.flatnonzero(nailed), which.max() + 1
+    lock, which = np.searchsorted(locks.offsets, np.flatnonzero(pinned), side="right") - 1, np.cumsum(pinned)
+    which = (which - np.append(0, which)[locks.offsets[:-1]].repeat(locks.counts))[pinned] - 1
+    edge, rows = np.flatnonzero(pinned), which.max() + 1
 
     def turned(strain: RodStrains) -> Array:
-        """The angle by which the first edge of each row of nails is turned, shape (count, rows)."""
+        """The angle by which the first edge of each row of pins is turned, shape (count, rows)."""
         angle, sums = np.zeros((len(locks), rows)), np.append(0.0, np.cumsum(strain.twist))
         angle[lock, which] = sums[edge] - sums[locks.offsets[lock]]
         return angle
@@ -141,8 +141,8 @@ def _strain_between_nails(strands: Strands, balance: Callable[[Array], RodStrain
     return _strain(strands, balance(moments))
 
 
-def _first_nailed(strands: Strands) -> Locks:
-    """The first edge of every row of nails that holds edges, as a mask of shape (n,)."""
+def _first_pinned(strands: Strands) -> Locks:
+    """The first edge of every row of pins that holds edges, as a mask of shape (n,)."""
     held_edge, _, _ = rigid_elements(np.asarray(strands.held))
     held_edge[strands.curves.offsets[1:] - 1] = False
     at_root = np.zeros(len(held_edge), bool)

@@ -15,14 +15,14 @@ from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
 from ringlet.shot.shot import Shot
 from ringlet.shot.variation import VARIATIONS
-from ringlet.sim.nails import spring_fraction
+from ringlet.sim.hair_pins import spring_fraction
 from ringlet.sim.obstacle import Obstacle
 from ringlet.sim.variation import at_vertices, material_factors
 
-NAILED = (
-    "nail",
-    "led_by_nail",
-)  # values at vertices: how firmly a nail holds, and the fraction of a step that it leads
+PINNED = (
+    "pin",
+    "led_by_pin",
+)  # values at vertices: how firmly a pin holds, and the fraction of a step that it leads
 SAME_PLACE = 1e-6  # points closer than this are the same: a file in single precision rounds them [m]
 
 # The settings that a rest shape depends on. `rest.gain` and the variation are stored as their values at the vertices.
@@ -62,9 +62,9 @@ def _of_body(body: Obstacle) -> dict[str, Any]:
 def values_at_vertices(shot: Shot, groom: Groom) -> dict[str, NDArray[np.float64]]:
     """The values at vertices that a rest shape depends on besides their positions, by name, shape (n,) each."""
     values = {"gain": at_vertices(shot.rest, "gain", groom, "rest.gain"), **material_factors(shot, groom)}
-    if "nail" in groom.locks.point:
+    if "pin" in groom.locks.point:
         led = spring_fraction(groom.locks, 1.0 / (groom.space.fps * shot.solver.substeps))
-        values |= dict(zip(NAILED, (groom.locks.point["nail"], led), strict=True))
+        values |= dict(zip(PINNED, (groom.locks.point["pin"], led), strict=True))
     return values
 
 
@@ -77,7 +77,7 @@ def changed_locks(stored: Curves, shot: Shot, groom: Groom) -> NDArray[np.bool_]
     """Locks of a groom that differ from those of a stored rest shape, shape (count,)."""
     changed = np.linalg.norm(stored.point["groomed"] - groom.locks.points, axis=1) > SAME_PLACE
     values = values_at_vertices(shot, groom)
-    for name, default in {"gain": 1.0, **dict.fromkeys(VARIATIONS, 1.0), **dict.fromkeys(NAILED, 0.0)}.items():
+    for name, default in {"gain": 1.0, **dict.fromkeys(VARIATIONS, 1.0), **dict.fromkeys(PINNED, 0.0)}.items():
         old, now = (np.asarray(of.get(name, np.full(len(changed), default))) for of in (stored.point, values))
         changed |= np.abs(old - now) > 1e-5 * np.maximum(now, 1e-3)
     return np.logical_or.reduceat(changed, groom.locks.offsets[:-1])

@@ -35,7 +35,7 @@ class Forces(Section):
 class Shot(Section):
     """A simulation of a groom on its animated scalp. SI units."""
 
-    ringlet: Literal[1] = Field(description="version of this format")
+    ringlet: Literal[2] = Field(description="version of this format")
     name: str = Field(default="", description="what the shot is called")
     groom: Path = Field(
         description="recipe (.toml) or groom (.usdc, .usda, .usd); a relative name counts from the shot"

@@ -16,8 +16,8 @@ from ringlet.data.mesh import Clip, Mesh
 from ringlet.data.rigid import best_rotation
 from ringlet.shot.cloth import ShotCloth
 from ringlet.sim.cloth import Cloth
+from ringlet.sim.cloth_pins import PinnedVertices
 from ringlet.sim.obstacle import Obstacle, refuse_flat
-from ringlet.sim.pins import PinnedVertices
 
 Array = NDArray[np.float64]
 

@@ -19,8 +19,8 @@ from ringlet.data.precision import compact
 from ringlet.shot.shot import Shot
 from ringlet.sim.cores import Cores
 from ringlet.sim.garment import Garment, SimulatedGarment, moved_with
+from ringlet.sim.hair_pins import held_vertices, spring_forces
 from ringlet.sim.lag import ROOTS, lagging
-from ringlet.sim.nails import held_vertices, spring_forces
 from ringlet.sim.obstacle import Obstacle
 from ringlet.sim.resting_contacts import initial_contact_forces
 from ringlet.sim.roots import Roots

@@ -83,7 +83,7 @@ def _plain(value: Any, name: str = "") -> dict[str, Any]:
 
 
 def _digests(value: Any, name: str) -> Iterator[tuple[str, str]]:
-    """The digests of all that a value holds, by names such as ``locks.point.nail``; places of files do not count."""
+    """The digests of all that a value holds, by names such as ``locks.point.pin``; places of files do not count."""
     if is_dataclass(value):
         value = {field.name: getattr(value, field.name) for field in fields(value)}
     if isinstance(value, Mapping):

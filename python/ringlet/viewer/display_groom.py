@@ -16,7 +16,7 @@ from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
 from ringlet.groom import AnyHairs, Groom, HairMemory, Memory, Recipe, join_grooms, lay_hairs, make_groom, recipes_of
-from ringlet.groom.operators import Clean, Context, Drawn
+from ringlet.groom.operators import Collide, Context, Drawn
 from ringlet.viewer import protocol
 from ringlet.viewer.maps import texture_of
 from ringlet.viewer.project import Project
@@ -30,7 +30,7 @@ NO_CURL: dict[str, NDArray] = {
 }
 
 
-class NoClean(Clean):
+class NoCollide(Collide):
     """Does nothing. Its margin is invalid in a recipe, so that the cache distinguishes its results."""
 
     def apply(self, curves: Curves, context: Context) -> Curves:
@@ -43,7 +43,7 @@ class DisplayGroom:
     """A groom for display.
 
     hairs:    render hairs; None for curves that are hairs themselves
-    draft:    whether the clean stage was skipped
+    draft:    whether the collide stage was skipped
     isolated: ids of locks with manual edits
     curves:   names of helper curves
     times:    times of the stages that were computed [ms]
@@ -147,14 +147,14 @@ class GroomEvaluator:
 
         muted:       stages without effect
         chosen:      the one of several grooms that ``muted`` is about
-        draft:       skips the clean stage
+        draft:       skips the collide stage
         check_abort: called between stages; may raise an exception to abort
         progress:    called with each stage and the fraction of the stages before it
         painted:     pictures of maps in place of those on disk, by name of the file
         """
         recipes = recipe.grooms or {"": recipe}
         clock = StageClock(sum(len(one.shape) + 4 for one in recipes.values()) + 1, check_abort, progress)
-        always = frozenset({"clean"}) if draft else frozenset()
+        always = frozenset({"collide"}) if draft else frozenset()
         made = {}
         for name, one in recipes.items():
             one = without_muted(one, always | (muted if name == chosen else frozenset()))
@@ -205,8 +205,8 @@ def without_muted(recipe: Recipe, muted: frozenset[str]) -> Recipe:
     }
     if "curl" in muted:
         changed["curl"] = None
-    if "clean" in muted:
-        changed["clean"] = NoClean.model_construct(margin=-1.0)
+    if "collide" in muted:
+        changed["collide"] = NoCollide.model_construct(margin=-1.0)
     return recipe.model_copy(update=changed)
 
 

@@ -18,6 +18,7 @@ from ringlet.data.errors import UserError
 from ringlet.data.files import replacing
 from ringlet.data.regular import read_text
 from ringlet.data.toml import toml_key
+from ringlet.data.upgrade import in_present_names
 from ringlet.viewer import blocks
 from ringlet.viewer.project import Project
 from ringlet.viewer.protocol import Change, Place
@@ -78,7 +79,8 @@ class History:
 class Document:
     """A file in its current state, with its history. Every state passes ``check``.
 
-    saved, saved_edits: the texts on disk, as they were read or written last
+    saved, saved_edits: the texts on disk, as they were read or written last, by the present names of settings
+    renamed:  former names of settings in the text as it was opened
     theirs:   texts of another program that are not loaded, for unsaved changes or since ``check`` refuses them
     check:    parses a text and the text of its file of edits; raises UserError for invalid ones
     edits:    text of the file of edits
@@ -97,12 +99,13 @@ class Document:
     ) -> None:
         """Opens a file; ``text`` is in place of its own."""
         self.path, self.history = path, history or History()
-        self.saved, self.saved_edits = read_text(path) if text is None else text, edits
+        self.saved, self.renamed = in_present_names(read_text(path) if text is None else text)
+        self.saved_edits = in_present_names(edits)[0]
         self.theirs: tuple[str, str] | None = None
         self._maps_before: dict[str, bytes] = {}  # as they were on disk before they were painted
         self.saved_maps: dict[str, bytes] = {}
         self._check, self.revision = check, 0
-        self.restore(State(self.saved, edits=edits))
+        self.restore(State(self.saved, edits=self.saved_edits))
 
     def restore(self, state: State) -> None:
         """Sets a state; raises UserError and keeps the current one when the state is invalid."""
@@ -163,8 +166,9 @@ class Document:
         """Sets unsaved texts and maps of an earlier session as one undo step; a version on disk other than ``saved`` is
         then a conflict. Raises UserError when they are invalid."""
         on_disk = self.saved, self.saved_edits
+        text, edits = _present(text, edits)
         self.apply(text, edits=edits, maps=maps)
-        self.saved, self.saved_edits = saved, saved_edits
+        self.saved, self.saved_edits = _present(saved, saved_edits)
         self.meet(*on_disk)
 
     def meet(self, text: str, edits: str) -> bool:
@@ -173,7 +177,7 @@ class Document:
 
         Raises UserError when they are invalid; they are then ``theirs``.
         """
-        self.theirs = None
+        self.theirs, (text, edits) = None, _present(text, edits)
         if (text, edits) == (self.saved, self.saved_edits):
             return False
         if (text, edits) != (self.text, self.state.edits):
@@ -307,6 +311,11 @@ class Document:
         """Diff of the current text against the saved one, with one line of context."""
         lines = [*_diff(self.saved, self.text), *_diff(self.saved_edits, self.state.edits)]
         return [Change.model_validate({"sign": line[0], "line": line[1:]}) for line in lines[:400]]
+
+
+def _present(text: str, edits: str) -> tuple[str, str]:
+    """A text and that of its file of edits by the present names of settings, which the page knows alone."""
+    return in_present_names(text)[0], in_present_names(edits)[0]
 
 
 def _diff(before: str, now: str) -> list[str]:

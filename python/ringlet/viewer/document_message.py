@@ -52,7 +52,7 @@ def stages(recipe: Recipe, state: State) -> list[protocol.Stage]:
     """Stages of a recipe in their order."""
     operators: list[tuple[str, Place]] = [(operator.op, ["shape", k]) for k, operator in enumerate(recipe.shape)]
     before: list[tuple[str, Place]] = [(name, [name]) for name in ("guides", "locks")]
-    after: list[tuple[str, Place]] = [(name, [name]) for name in ("curl", "clean", "hairs", "color", "fiber")]
+    after: list[tuple[str, Place]] = [(name, [name]) for name in ("curl", "collide", "hairs", "color", "fiber")]
     return [
         protocol.Stage(
             name=op,

@@ -11,7 +11,7 @@ from ringlet.data.regular import read_text
 from ringlet.data.settings import check_name, read_toml
 from ringlet.groom import Recipe
 from ringlet.groom.edits_file import edits_text
-from ringlet.groom.load import APPEND, inherited, parse_edits
+from ringlet.groom.load import APPEND, EMPTY, inherited, parse_edits
 from ringlet.groom.named import GROOMS
 from ringlet.shot import Shot
 from ringlet.viewer.document import Document, History
@@ -141,7 +141,7 @@ class Files:
         """
         self.refuse_several()
         document = self.recipe
-        edits = parse_edits(document.state.edits or "ringlet = 1", document.path)
+        edits = parse_edits(document.state.edits or EMPTY, document.path)
         text = edits_text({**edits, kind: tables})
         if not document.contents().get("edits"):
             document.set([(["edits"], self.unused_name(document.path, ".edits.toml"))], gesture)

@@ -10,6 +10,7 @@ import numpy as np
 from pydantic import BaseModel
 
 from ringlet.data.quantities import UNITS, Quantity, Varied, along
+from ringlet.data.settings import FORMAT
 from ringlet.groom import Recipe
 from ringlet.groom.load import stage_names
 
@@ -29,7 +30,7 @@ def mix(a: Recipe, b: Recipe, share: float, names: Sequence[str]) -> Recipe:
     mixed = {name: _mixed(_table(a, name), _table(b, name), share, name) for name in names}
     known = {name: getattr(a, name) for name in a.model_fields_set if name not in mixed}
     given = {name: value for name, value in mixed.items() if value is not None}
-    recipe = Recipe.model_validate({**known, "ringlet": 1, **given}, context={"unit": 1.0})
+    recipe = Recipe.model_validate({**known, "ringlet": FORMAT, **given}, context={"unit": 1.0})
     recipe._path, recipe._text = a.path, a.text
     return recipe
 
@@ -144,7 +145,7 @@ def _stated_varied(value: Varied, default: Any, unit: str, *, length: bool) -> A
         if isinstance(one, dict):
             table[name] = {str(key): _stated(own, unit, length=length) for key, own in one.items()}
         else:
-            table[name] = _stated(one, unit, length=name == "noise_size")
+            table[name] = _stated(one, unit, length=name == "noise_wavelength")
     if value.map is not None:
         table["map"] = value.map
     varies = isinstance(default, Varied) and (default.vary or default.noise)  # a number alone takes that away

@@ -14,7 +14,7 @@ from pydantic import ValidationError
 from ringlet.data.errors import UserError
 from ringlet.data.files import replacing
 from ringlet.data.quantities import explain
-from ringlet.data.settings import check_name, parse_toml
+from ringlet.data.settings import FORMAT, check_name, parse_toml
 from ringlet.data.share import share
 from ringlet.data.toml import to_toml
 from ringlet.groom import Recipe
@@ -28,7 +28,7 @@ from ringlet.viewer.wire import pack
 
 Tables = dict[str, Any]
 
-LOOK = ("guides", "locks", "shape", "curl", "nail", "clean", "hairs", "color", "fiber")  # tables of a whole look
+LOOK = ("guides", "locks", "shape", "curl", "pin", "collide", "hairs", "color", "fiber")  # tables of a whole look
 HELPERS = ("curves", "meshes")  # that the tables of a look name
 FOLDERS = ("looks", "types")  # of the examples
 SUFFIX = ".preset.toml"
@@ -151,7 +151,7 @@ class Presets:
         picture = _jpeg(message.picture) if message.picture else None
         unit = {} if document.model.unit == "cm" else {"unit": document.model.unit}
         with replacing(path, update=True) as aside:
-            aside.write_text(to_toml({"ringlet": 1, **unit, **kept}), encoding="utf-8")
+            aside.write_text(to_toml({"ringlet": FORMAT, **unit, **kept}), encoding="utf-8")
         if picture is not None:
             with replacing(_own(path).picture, update=True) as aside:
                 aside.write_bytes(picture)

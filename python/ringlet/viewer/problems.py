@@ -13,6 +13,8 @@ GROOM = "groom"  # the groom cannot be made
 WORK = "work"  # the groom takes much longer than the one that is seen
 SAVE = "save"
 RECOVERED = "recovered"
+RENAMED = "renamed"  # the file has former names of settings
+OF_OPENING = {RECOVERED, RENAMED}
 
 UNDO = Fix(label="Undo", message={"kind": "undo"})
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from ringlet.data.errors import UserError
 from ringlet.viewer import protocol
 from ringlet.viewer.files import Files
-from ringlet.viewer.problems import GROOM, RECOVERED, SAVE, ProblemList, dismiss
+from ringlet.viewer.problems import GROOM, RECOVERED, RENAMED, SAVE, ProblemList, dismiss
 from ringlet.viewer.protocol import File, Fix
 from ringlet.viewer.writing import write, write_copy
 
@@ -36,7 +36,7 @@ class Saving:
             reason = f"{files.recipe.path.name} is not saved: {self._problems[GROOM].message}"
             self._problems.show(SAVE, reason, [anyway, dismiss(SAVE)])
             return None
-        self._problems.clear(SAVE, RECOVERED)
+        self._problems.clear(SAVE, RECOVERED, RENAMED)
         if not message.name:
             return write(files, message.file)
         path = write_copy(files, message.file, message.name, as_variant=message.variant)

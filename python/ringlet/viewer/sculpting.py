@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.groom import Groom, Recipe
-from ringlet.groom.load import parse_edits
+from ringlet.groom.load import EMPTY, parse_edits
 from ringlet.groom.scalp import Scalp
 from ringlet.groom.sculpt import Sculpt, sculpted, sculpts_to
 from ringlet.viewer import brush, protocol
@@ -119,7 +119,7 @@ class Sculptor:
         """Writes the sculpts of a stroke; keeps those of guides that do not exist now."""
         self._stroke = None
         existing = set(stroke.before.ids.tolist())
-        tables = parse_edits(self._files.recipe.state.edits or "ringlet = 1", self._files.recipe.path)["sculpt"]
+        tables = parse_edits(self._files.recipe.state.edits or EMPTY, self._files.recipe.path)["sculpt"]
         kept = [table for table in tables if table.get("guide") not in existing]
         sculpts = [*kept, *sculpts_to(stroke.before, stroke.guides, stroke.scalp)]
         self._files.write_edits("sculpt", sculpts, stroke.gesture)

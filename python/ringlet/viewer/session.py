@@ -13,6 +13,7 @@ from typing import Any
 
 from ringlet import api
 from ringlet.data.errors import UserError
+from ringlet.data.former_names import note
 from ringlet.viewer import display_colors, protocol
 from ringlet.viewer.comparer import Comparer
 from ringlet.viewer.disk_changes import DiskChanges
@@ -25,7 +26,7 @@ from ringlet.viewer.lights import live_rigs
 from ringlet.viewer.operator_list import operator_names
 from ringlet.viewer.pages import Page, Pages
 from ringlet.viewer.playback import Playback
-from ringlet.viewer.problems import RECOVERED, ProblemList
+from ringlet.viewer.problems import OF_OPENING, RECOVERED, RENAMED, ProblemList, dismiss
 from ringlet.viewer.project import Project
 from ringlet.viewer.publisher import Publisher
 from ringlet.viewer.recovery import Recovery
@@ -88,6 +89,10 @@ class Session:
         self._disk.open(files)
         self._saving.open(files)
         self._editing.open(files, viewport, self._grooming, self._comparer, self._playback, self._review, self._disk)
+        for document in files.documents.values():
+            if document.renamed:
+                message = f"{document.path.name}: {note(document.renamed)}; the next save writes these names"
+                self.problems.show(RENAMED, message, [dismiss(RENAMED)])
         entry = self._recovery.recover()
         self.recovered = entry is not None
         if entry is not None:
@@ -129,7 +134,7 @@ class Session:
             raise
         playback.stop()
         recovery.close(discard=True)
-        self.problems.clear(*(self.problems.subjects - {RECOVERED}))
+        self.problems.clear(*(self.problems.subjects - OF_OPENING))
         self.problems.publish()
         if files := before.get("files"):
             self.publisher.publish("files", files)

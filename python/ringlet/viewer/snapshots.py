@@ -8,10 +8,13 @@ recipe extends may change later, so that a snapshot also has ``ID.resolved.toml`
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
-from pydantic import BaseModel
+from pydantic import AfterValidator, BaseModel
 
 from ringlet.data.errors import UserError
+from ringlet.data.former_names import present
+from ringlet.data.upgrade import in_present_names
 from ringlet.groom import Recipe
 from ringlet.viewer.document import Document
 from ringlet.viewer.files import Files
@@ -30,7 +33,7 @@ class Stored(BaseModel):
     author: str = ""
     note: str = ""
     time: str = ""
-    muted: list[str] = []
+    muted: Annotated[list[str], AfterValidator(lambda stages: [*present(dict.fromkeys(stages), "muted")[0]])] = []
     solo: str = ""
     look: Shared
 
@@ -77,10 +80,10 @@ class SnapshotStore(Entries[Stored]):
     def texts(self, id: str) -> Texts:
         """The recipe of a snapshot; raises UserError when its file is gone."""
         self.__getitem__(id)
-        written = self.folder.text(self.file(id, RECIPE))
+        written = in_present_names(self.folder.text(self.file(id, RECIPE)))[0]
         if not written:
             raise UserError(f"snapshot: {id}{RECIPE} is gone; delete the snapshot")
-        resolved, edits = (self.folder.text(self.file(id, suffix)) for suffix in (RESOLVED, EDITS))
+        resolved, edits = (in_present_names(self.folder.text(self.file(id, suffix)))[0] for suffix in (RESOLVED, EDITS))
         return Texts(written, resolved or written, edits)
 
 

@@ -11,6 +11,7 @@ from pydantic import BaseModel
 
 from ringlet.data.errors import UserError
 from ringlet.data.quantities import Quantity
+from ringlet.data.settings import FORMAT
 from ringlet.data.toml import toml_key
 from ringlet.groom import Recipe
 from ringlet.groom.load import stage_names
@@ -42,7 +43,7 @@ def variant(document: Document, parse: Callable[[str, Path, str], Recipe], path:
 def _text(document: Document, edits: Path | None) -> str:
     before, now = tomllib.loads(document.saved), document.contents()
     changes = _differing(_inheritable(before), _inheritable(now), document.model)
-    lines = [f"# {now.get('name') or document.path.stem}, with other values.", "ringlet = 1"]
+    lines = [f"# {now.get('name') or document.path.stem}, with other values.", f"ringlet = {FORMAT}"]
     lines.append(f'extends = "{document.path.name}"')
     if edits is not None:
         lines.append(f'edits = "{edits.name}"')
@@ -112,7 +113,7 @@ def _current_value(model: Any, name: str) -> Any:
 
 def _is_table(name: str, value: Any) -> bool:
     return isinstance(value, dict) or (
-        isinstance(value, list) and name in ("shape", "edit", "nail") and all(isinstance(one, dict) for one in value)
+        isinstance(value, list) and name in ("shape", "edit", "pin") and all(isinstance(one, dict) for one in value)
     )
 
 

@@ -143,5 +143,5 @@ def measured(groom: Groom, depth: np.ndarray) -> bytes:
     return pack(
         protocol.Measured(inside=int(np.count_nonzero(depth))),
         depth=overlays.as_bytes(depth / overlays.DEPTH_SHOWN),
-        nail=overlays.as_bytes(groom.locks.point.get("nail", np.empty(0))),
+        pin=overlays.as_bytes(groom.locks.point.get("pin", np.empty(0))),
     )

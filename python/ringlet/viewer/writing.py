@@ -6,6 +6,7 @@ from pathlib import Path
 
 from ringlet.data.errors import UserError
 from ringlet.data.files import replacing
+from ringlet.data.settings import FORMAT
 from ringlet.viewer.document import Document, set_value
 from ringlet.viewer.files import Files
 from ringlet.viewer.protocol import File
@@ -71,4 +72,4 @@ def _write_map(files: Files, path: Path, name: str, picture: bytes) -> None:
 def _write_edits(file: Path | None, text: str) -> None:
     if file is not None:
         with replacing(file, update=True) as aside:
-            aside.write_text(text or "ringlet = 1\n", encoding="utf-8")
+            aside.write_text(text or f"ringlet = {FORMAT}\n", encoding="utf-8")

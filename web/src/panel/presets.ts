@@ -10,7 +10,7 @@ import { Slider } from "./slider";
 
 const AFTER = 160; // time that a pointer rests on a preset before it is shown [ms]
 const PICTURE = [160, 178] as const; // of a preset that is kept [pixels]
-const TABLES = ["guides", "locks", "shape", "curl", "hairs", "color", "fiber", "nail", "clean"];
+const TABLES = ["guides", "locks", "shape", "curl", "hairs", "color", "fiber", "pin", "collide"];
 
 export class PresetTool {
   /** Whom to tell that it is opened. */

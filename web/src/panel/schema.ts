@@ -15,7 +15,7 @@ const NAMED: Record<string, Named> = {
   tie: "curves",
   line: "curves",
   path: "curves",
-  partings: "curves",
+  part_lines: "curves",
 };
 
 export interface Setting {

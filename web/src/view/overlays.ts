@@ -2,7 +2,7 @@
 
 import type { Frame, Measured } from "../protocol";
 
-export type OverlayName = "depth" | "nail" | "stretch" | "contact" | "curl";
+export type OverlayName = "depth" | "pin" | "stretch" | "contact" | "curl";
 
 export interface Overlay {
   label: string;
@@ -14,7 +14,7 @@ export interface Overlay {
 
 export const OVERLAYS: Record<OverlayName, Overlay> = {
   depth: { label: "inside the head", low: "outside", high: "2 mm deep", diverging: false, moving: false },
-  nail: { label: "nails", low: "free", high: "held", diverging: false, moving: false },
+  pin: { label: "pins", low: "free", high: "held", diverging: false, moving: false },
   stretch: { label: "stretch", low: "2 % shorter", high: "2 % longer", diverging: true, moving: true },
   contact: { label: "contacts", low: "untouched", high: "pressed", diverging: false, moving: true },
   curl: { label: "curl loss", low: "as groomed", high: "straight", diverging: false, moving: true },
@@ -23,7 +23,7 @@ export const OVERLAYS: Record<OverlayName, Overlay> = {
 /** The values of an overlay: of the frame that is seen, or else of the groom at rest. */
 export function overlayValues(name: OverlayName | "", frame: Frame | undefined, still: Measured | null) {
   if (name === "") return undefined;
-  if (name === "nail") return still?.nail;
+  if (name === "pin") return still?.pin;
   if (name === "depth") return frame ? frame.depth : still?.depth;
   return frame?.[name];
 }

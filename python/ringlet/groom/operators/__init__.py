@@ -7,8 +7,8 @@ from pydantic import Field
 from ringlet.groom.operators.attract import Attract
 from ringlet.groom.operators.bend import Bend
 from ringlet.groom.operators.braid import Braid
-from ringlet.groom.operators.clean import Clean
 from ringlet.groom.operators.clump import Clump
+from ringlet.groom.operators.collide import Collide
 from ringlet.groom.operators.cornrow import Cornrow
 from ringlet.groom.operators.curl import Curl
 from ringlet.groom.operators.cut import Cut
@@ -66,8 +66,8 @@ __all__ = [
     "Attract",
     "Bend",
     "Braid",
-    "Clean",
     "Clump",
+    "Collide",
     "Context",
     "Cornrow",
     "Curl",

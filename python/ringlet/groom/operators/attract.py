@@ -18,14 +18,14 @@ from ringlet.groom.operators.shape import Shape
 
 class Attract(Shape):
     """Attracts each lock to the helper curve with the nearest root:
-    ``p' = p + amount · ramp(u) · falloff · (curve(u) - p)``, with a falloff from 1 to 0 over ``reach``."""
+    ``p' = p + amount · ramp(u) · falloff · (curve(u) - p)``. It goes from 1 to 0 over ``falloff``."""
 
     op: Literal["attract"] = "attract"
     curve: str = Field(min_length=1, description="name of the helper curves, from `[curves]`")
     amount: Annotated[Ramped, Quantity("", 0.0, 1.0, product=False)] = Field(
         default=Ramped(value=0.5, ramp=[(0, 0), (1, 1)]), description="0 leaves the shape, 1 puts it on the curve"
     )
-    reach: Annotated[float | None, Quantity("m", 1e-4, 10.0)] = Field(
+    falloff: Annotated[float | None, Quantity("m", 1e-4, 10.0)] = Field(
         default=None, description="locks farther from the root of the curve than this stay; all come when absent"
     )
 
@@ -35,7 +35,7 @@ class Attract(Shape):
         helper = context.helper(self.curve, "curve")
         lines = _core.resample_curves(*packed(helper), count).reshape(len(helper), count, 3)
         distance, nearest = KDTree(lines[:, 0]).query(points[:, 0])
-        t = np.ones(len(points)) if self.reach is None else np.clip(1.0 - distance / self.reach, 0.0, 1.0)
+        t = np.ones(len(points)) if self.falloff is None else np.clip(1.0 - distance / self.falloff, 0.0, 1.0)
         amount = context.values(self, "amount", curves) * t * t * (3.0 - 2.0 * t)
         amount = np.minimum(amount[:, None] * self.amount.along(np.linspace(0.0, 1.0, count)), 1.0)
         amount[:, 0] = 0.0

@@ -12,7 +12,7 @@ from ringlet.data.curves import Curves
 from ringlet.data.quantities import Quantity, Ramped
 from ringlet.groom.operators.operator import Context, along_edges, between_edges, turned, unit
 from ringlet.groom.operators.shape import Shape
-from ringlet.groom.parting import Direction
+from ringlet.groom.part_line import Direction
 
 
 class Bend(Shape):

@@ -16,15 +16,15 @@ from ringlet.groom.operators.shape import Shape
 
 
 class Clump(Shape):
-    """Pulls neighbouring locks towards a clump centre: ``p' = p + amount · ramp(u) · (centre(u) - p)``. The centres are
-    the locks nearest to samples of the scalp at spacing ``size``; a lock goes to the nearest that leans less than
+    """Pulls neighbouring locks towards a clump centre: ``p' = p + tightness · ramp(u) · (centre(u) - p)``. The centres
+    are the locks nearest to samples of the scalp at spacing ``size``; a lock goes to the nearest that leans less than
     ``apart`` from it. Further levels make smaller clumps within the larger ones: the spacing shrinks by ``finer`` a
-    level, and the amount is the same. An amount that is a plain number varies from root to tip, not from lock to
+    level, and the tightness is the same. A tightness that is a plain number varies from root to tip, not from lock to
     lock."""
 
     op: Literal["clump"] = "clump"
     size: Annotated[float, Quantity("m", 1e-3, 1.0)] = Field(default=0.02, description="distance of the clumps")
-    amount: Annotated[Ramped, Quantity("", 0.0, 1.0, product=False)] = Field(
+    tightness: Annotated[Ramped, Quantity("", 0.0, 1.0, product=False)] = Field(
         default=Ramped(value=0.4, vary=0.5, ramp=[(0, 0), (1, 1)]), description="0 apart, 1 all at the centre"
     )
 
@@ -36,18 +36,19 @@ class Clump(Shape):
 
     @classmethod
     def defaults(cls, data: dict[str, Any]) -> dict[str, Any]:
-        """Defaults of the class; a plain number for ``amount`` applies to all locks, without variation."""
+        """Defaults of the class; a plain number for ``tightness`` applies to all locks, without variation."""
         defaults = super().defaults(data)
-        if isinstance(data.get("amount"), int | float):
-            del defaults["amount"]["vary"]
+        if isinstance(data.get("tightness"), int | float):
+            del defaults["tightness"]["vary"]
         return defaults
 
     def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
         """Returns the clumped shapes, large clumps first; roots stay."""
-        amount = context.values(self, "amount", curves)[:, None]
-        amount = np.minimum(amount * self.amount.along(np.linspace(0.0, 1.0, points.shape[1])), 1.0)[:, :, None]
+        tightness = context.values(self, "tightness", curves)[:, None]
+        ramp = self.tightness.along(np.linspace(0.0, 1.0, points.shape[1]))
+        tightness = np.minimum(tightness * ramp, 1.0)[:, :, None]
         for level in range(self.levels):
             size = self.size * self.finer**level
             centre = leaders(points, size, self.apart, context.scalp, context.seed + 1)
-            points = points + amount * (points[centre] - points)
+            points = points + tightness * (points[centre] - points)
         return points

@@ -29,7 +29,7 @@ ROOTS_APART = 1.8  # of a row's strands, in radii of a strand
 class Cornrow(Woven):
     """Braids the strands of each section on the scalp, along the middle of the section from its front to its back, or
     along a drawn ``path``; beyond its end the braid hangs as a tail. Hair of the section lies flat towards the braid
-    and joins it on its side, ``feed`` behind where it grows. In a shot the braid is nailed to the scalp.
+    and joins it on its side, ``feed`` behind where it grows. In a shot the braid is pinned to the scalp.
 
     The strands are as in ``braid``, with x across the row and z along the normal of the scalp. The braid lies between
     the scalp and ``height``.
@@ -54,7 +54,7 @@ class Cornrow(Woven):
     length: Annotated[Varied, Quantity("m", 1e-3, 2.0)] = Field(
         default=Varied(value=0.08), description="length of the tail"
     )
-    droop: Annotated[Varied, Quantity("", 0.0, 10.0)] = Field(
+    gravity_bend: Annotated[Varied, Quantity("", 0.0, 10.0)] = Field(
         default=Varied(value=2.0), description="how much the tail hangs down"
     )
 
@@ -83,18 +83,18 @@ class Cornrow(Woven):
         if not has.any():
             raise UserError(f"{context.purpose}: no row is long enough; make the sections wider, or draw the path")
         leaders, rows = leaders.take(has), [of for of, there in zip(rows, has, strict=True) if there]
-        values = {k: context.values(self, k, leaders) for k in ("feed", "off", "length", "droop")}
+        values = {k: context.values(self, k, leaders) for k in ("feed", "off", "length", "gravity_bend")}
         lain = [lines[int(section)].shortened(off) for section, off in zip(leaders.ids, values["off"], strict=True)]
 
         shapes, points = grid(fine).copy(), grid(fine).shape[1]
         for k, (row, of) in enumerate(zip(lain, rows, strict=True)):
-            shapes[of] = evenly(_with_tail(row, row.points, values["length"][k], values["droop"][k])[0], points)
+            shapes[of] = evenly(_with_tail(row, row.points, values["length"][k], values["gravity_bend"][k])[0], points)
         fine = fine.with_points(np.ascontiguousarray(shapes.reshape(-1, 3)))
         core = (CORE,) if self.simulate == "core" else ()
         attributes = _attributes(fine, (STRAND_RADIUS, JOIN, LAID, *core))
         tied = fine.point.get(TIED, np.zeros(len(fine.points), np.float32)).reshape(shapes.shape[:2]).copy()
         for k, braid in enumerate(self.braids(fine, leaders, rows, context)):
-            self._lay(braid, lain[k], values["length"][k], values["droop"][k], shapes, attributes, context)
+            self._lay(braid, lain[k], values["length"][k], values["gravity_bend"][k], shapes, attributes, context)
             tied[braid.rows] = braid.tied(points)
             if CORE in attributes:
                 attributes[CORE][braid.rows] = self.simulate == "core"
@@ -120,7 +120,7 @@ class Cornrow(Woven):
         braid: Braided,
         row: Row,
         length: float,
-        droop: float,
+        gravity_bend: float,
         shapes: NDArray,
         attributes: dict[str, NDArray],
         context: Context,
@@ -133,7 +133,7 @@ class Cornrow(Woven):
         size = self.width.along(along / braid.length)
         lift = (size * abs(braid.front) + braid.radius) * t * t * (3.0 - 2.0 * t)
         skin = row.points + lift[:, None] * row.normals
-        line, normals = _with_tail(row, skin, length, droop)
+        line, normals = _with_tail(row, skin, length, gravity_bend)
         line, front = evenly(line, points), _along(line, normals, points)
         tangent = unit(np.gradient(line, axis=0))
         front = unit(front - np.sum(front * tangent, axis=1, keepdims=True) * tangent)
@@ -158,11 +158,13 @@ def _attributes(curves: Curves, names: Sequence[str]) -> dict[str, NDArray]:
     return {name: values.copy() for name, values in {**none, **curves.curve}.items()}
 
 
-def _with_tail(row: Row, skin: NDArray, length: float, droop: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _with_tail(
+    row: Row, skin: NDArray, length: float, gravity_bend: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Points above a row and of a tail after it [m], and the normals of the scalp, transported along the tail."""
     start = unit(unit(skin[-1] - skin[-3]) + OFF * row.normals[-1])
     u = (np.arange(TAIL_POINTS) + 0.5) / TAIL_POINTS
-    edges = length / TAIL_POINTS * unit(start - (droop * u)[:, None] * UP)
+    edges = length / TAIL_POINTS * unit(start - (gravity_bend * u)[:, None] * UP)
     tail = skin[-1] + np.cumsum(edges, axis=0)
     line = np.ascontiguousarray(np.concatenate([skin[-1:], tail]))
     first = np.ascontiguousarray(row.normals[-1:])

@@ -16,7 +16,7 @@ from ringlet.data.groom import STRAND_RADIUS
 from ringlet.data.quantities import Quantity, Ramp, Ramped, Varied, along, refuse
 from ringlet.data.random import soft_threshold
 from ringlet.groom.operators.operator import Context, Operator, at_even_lengths, packed
-from ringlet.groom.operators.phase_lock import PhaseLock
+from ringlet.groom.operators.phase_groups import PhaseGroups
 from ringlet.groom.operators.tied import after_ties, with_heads
 from ringlet.groom.presets import PRESETS, Preset
 from ringlet.groom.scalp import axes
@@ -84,13 +84,15 @@ class Curl(Operator):
     phase_spread: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
         default=Varied(value=1.0), description="0: all start alike, 1: anywhere"
     )
-    phase_alike: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
+    phase_coherence: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
         default=Varied(value=0.0), description="how much of that spread neighbours share: 0 nothing, 1 all"
     )
-    phase_size: Annotated[float, Quantity("m", 1e-3, 1.0)] = Field(
+    phase_wavelength: Annotated[float, Quantity("m", 1e-3, 1.0)] = Field(
         default=0.03, description="distance over which neighbours forget one another's phase"
     )
-    phase_lock: PhaseLock | None = Field(default=None, description="neighbours whose curls fall in with one another")
+    phase_groups: PhaseGroups | None = Field(
+        default=None, description="neighbours whose curls fall in with one another"
+    )
     irregularity: Annotated[Varied, Quantity("", 0.0, 0.9)] = Field(
         default=Varied(value=0.2), description="how much width and pitch wander along a lock"
     )
@@ -204,7 +206,7 @@ class Curl(Operator):
             sway=np.pi * np.clip(kink, 0.0, 1.0)[:, None] * noise["sway"],
             switchbacks=_events(values("switchbacks"), context.random("switchbacks").uniforms(ids, MAX_EVENTS)),
             skips=_events(values("skips"), context.random("skips").uniforms(ids, MAX_EVENTS)),
-            **(self.phase_lock.values(curves, context) if self.phase_lock else _no_phase_lock(len(ids))),
+            **(self.phase_groups.values(curves, context) if self.phase_groups else _no_phase_groups(len(ids))),
             counted=self.curls is not None,
             keep_length=self.keep == "length",
             count=points,
@@ -233,10 +235,10 @@ class Curl(Operator):
     def _phase(self, curves: Curves, context: Context) -> NDArray[np.float64]:
         """Initial phase of each curl [degrees], shape (count,): random per lock plus a field that neighbours share."""
         spread, shared_fraction, phase = (
-            context.values(self, name, curves) for name in ("phase_spread", "phase_alike", "phase")
+            context.values(self, name, curves) for name in ("phase_spread", "phase_coherence", "phase")
         )
         own = context.random("phase").uniform(curves.ids)
-        shared = context.random("phase_field").field(curves.roots, self.phase_size)
+        shared = context.random("phase_field").field(curves.roots, self.phase_wavelength)
         return phase + 360.0 * spread * ((1.0 - shared_fraction) * own + shared_fraction * shared)
 
 
@@ -249,7 +251,7 @@ def _events(rate: NDArray, chance: NDArray) -> NDArray[np.float64]:
     return np.minimum(np.cumsum(gaps, axis=1) / np.maximum(rate, 1e-9)[:, None], NEVER)
 
 
-def _no_phase_lock(count: int) -> dict[str, NDArray]:
+def _no_phase_groups(count: int) -> dict[str, NDArray]:
     """Arguments of the core for locks without phase locking; each of shape (count,)."""
     zeros = np.zeros(count)
     return {"leader": np.arange(count, dtype=np.int32), "join": zeros, "join_over": zeros, "cohesion": zeros}

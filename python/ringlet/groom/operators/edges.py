@@ -30,7 +30,7 @@ class Edges(Shape):
     ``direction`` from the way out of the scalp, away from the middle of the face, and turns on by
     ``swoop · ramp(u) + wave sin(2πs / wavelength)``. Locks of a swoop come together towards its tip.
 
-    Locks lie between the skin and ``height``, are not curled or moved off the skin, and are nailed in a shot. Put it
+    Locks lie between the skin and ``height``, are not curled or moved off the skin, and are pinned in a shot. Put it
     after the operators that move locks.
     """
 
@@ -60,7 +60,7 @@ class Edges(Shape):
     size: Annotated[float, Quantity("m", 1e-3, 0.5)] = Field(
         default=0.018, description="distance of swoops along the border"
     )
-    gather: Annotated[Ramped, Quantity("", 0.0, 1.0, product=False)] = Field(
+    tightness: Annotated[Ramped, Quantity("", 0.0, 1.0, product=False)] = Field(
         default=Ramped(value=0.85, ramp=[(0, 0), (0.5, 0.6), (1, 1)]),
         description="how far locks of a swoop come together: 0 not, 1 in one line",
     )
@@ -122,8 +122,10 @@ class Edges(Shape):
         of = np.asarray(KDTree(middles.roots).query(curves.roots)[1])
         own = self._path(curves, hand[of], points, edge, context)
         led = self._path(middles, hand, points, edge, context)[of]
-        gather = context.values(self, "gather", curves)[:, None] * self.gather.along(np.linspace(0.0, 1.0, points))
-        return own + np.minimum(gather, 1.0)[:, :, None] * (led - own)
+        tightness = context.values(self, "tightness", curves)[:, None] * self.tightness.along(
+            np.linspace(0.0, 1.0, points)
+        )
+        return own + np.minimum(tightness, 1.0)[:, :, None] * (led - own)
 
     def _path(self, curves: Curves, hand: NDArray, points: int, edge: Edge, context: Context) -> NDArray[np.floating]:
         """Paths on the skin from roots, each turning by itself; shape (count, points, 3).

@@ -17,28 +17,30 @@ from ringlet.groom.operators.wander import wander
 
 
 class Frizz(Displacement):
-    """Noise of short wavelength across the lock: ``p' = p + amount · ramp(u) · (noise - (noise · t) t)``, with t the
+    """Noise of short wavelength across the lock: ``p' = p + magnitude · ramp(u) · (noise - (noise · t) t)``, with t the
     tangent of the lock and independent noise per lock."""
 
     op: Literal["frizz"] = "frizz"
-    amount: Annotated[Ramped, Quantity("m", 0.0, 0.1)] = Field(
+    magnitude: Annotated[Ramped, Quantity("m", 0.0, 0.1)] = Field(
         default=Ramped(value=0.001, ramp=[(0, 0), (0.2, 1), (1, 1)]), description="how far it goes (deviation)"
     )
-    size: Annotated[float, Quantity("m", 5e-4, 1.0)] = Field(default=0.008, description="length over which it changes")
+    wavelength: Annotated[float, Quantity("m", 5e-4, 1.0)] = Field(default=0.008, description="length of its waves")
 
     def displaced(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
         """Returns the shapes with frizz; roots stay.
 
-        Raises UserError when ``size`` is shorter than the spacing of the points.
+        Raises UserError when ``wavelength`` is shorter than the spacing of the points.
         """
         along, count = arc_lengths(points), points.shape[1]
-        if (longest := float(along[:, -1].max())) / (count - 1) > self.size:
+        if (longest := float(along[:, -1].max())) / (count - 1) > self.wavelength:
             raise UserError(
-                f"{context.purpose}.size is {self.size:.4g} m, less than the {longest / (count - 1):.4g} m between the "
-                f"points of a shape; set locks.shape_points to {int(np.ceil(2.0 * longest / self.size)) + 1}"
+                f"{context.purpose}.wavelength is {self.wavelength:.4g} m, less than the {longest / (count - 1):.4g} m "
+                "between the points of a shape; set locks.shape_points to "
+                f"{int(np.ceil(2.0 * longest / self.wavelength)) + 1}"
             )
-        noise = wander(context.random("wander"), curves.ids, along, self.size)
+        noise = wander(context.random("wander"), curves.ids, along, self.wavelength)
         tangent = unit(np.gradient(points, axis=1))
         across = noise - np.sum(noise * tangent, axis=2, keepdims=True) * tangent
-        magnitude = context.values(self, "amount", curves)[:, None] * self.amount.along(np.linspace(0.0, 1.0, count))
+        ramp = self.magnitude.along(np.linspace(0.0, 1.0, count))
+        magnitude = context.values(self, "magnitude", curves)[:, None] * ramp
         return points + magnitude[:, :, None] * across

@@ -17,26 +17,28 @@ from ringlet.groom.edge import EdgeScalp
 from ringlet.groom.mask import Mask
 from ringlet.groom.operators.guides import Guides
 from ringlet.groom.operators.operator import UP, Context, packed, unit
-from ringlet.groom.parting import Direction, Parting
+from ringlet.groom.part_line import Direction, PartLine
 
 DRAWN_IDS = 1 << 51  # of guides that are drawn, above those of guides that grow
 DRAWN_TOLERANCE = 0.02  # of a drawn root from the scalp, onto which it is moved [m]
 
 
 class Zone(Section):
-    """A zone of the head with its own length, lift and droop: a cone around a direction with a falloff, a mask, or the
-    intersection of both."""
+    """A zone of the head with its own length, lift and gravity bend: a cone around a direction with a falloff, a mask,
+    or the intersection of both."""
 
     toward: Direction | None = Field(
         default=None, description="direction from the middle of the scalp, Y up: [0, 0.5, 1] is the forehead"
     )
-    spread: Annotated[float, Quantity("deg", 1.0, 180.0)] = Field(
+    angle: Annotated[float, Quantity("deg", 1.0, 180.0)] = Field(
         default=40.0, description="half the opening angle of the zone"
     )
     mask: Annotated[Mask | None, Quantity("", 0.0, 1.0)] = Field(default=None, description="where it is")
     length: Annotated[float, Quantity("", 0.0, 10.0)] = Field(default=1.0, description="factor on the length")
     lift: Annotated[float, Quantity("", 0.0, 10.0)] = Field(default=1.0, description="factor on the lift")
-    droop: Annotated[float, Quantity("", 0.0, 10.0)] = Field(default=1.0, description="factor on the droop")
+    gravity_bend: Annotated[float, Quantity("", 0.0, 10.0)] = Field(
+        default=1.0, description="factor on the gravity bend"
+    )
 
     @model_validator(mode="after")
     def _has_extent(self) -> Zone:
@@ -53,7 +55,7 @@ class Zone(Section):
         if self.toward is not None:
             outward = unit(seeds.points - context.scalp.middle)
             angle = np.degrees(np.arccos(np.clip(outward @ unit(np.array(self.toward)), -1.0, 1.0)))
-            t = np.clip(1.0 - angle / self.spread, 0.0, 1.0)
+            t = np.clip(1.0 - angle / self.angle, 0.0, 1.0)
             weight *= t * t * (3.0 - 2.0 * t)
         if self.mask is not None:
             weight *= self.mask.weights(seeds, context.scalp.mesh, context.random("zone"), f"{what}.mask")[:, 0]
@@ -64,8 +66,8 @@ class Grown(Guides):
     """Grows guides on the scalp.
 
     A guide starts in the direction ``d₀ = lift · normal + (1 - lift) · flow`` and bends down towards its tip:
-    ``d(u) = d₀ + droop · u · down``, with u from 0 (root) to 1 (tip). The flow is tangent to the surface and points
-    away from the whorl.
+    ``d(u) = d₀ + gravity_bend · u · down``, with u from 0 (root) to 1 (tip). The flow is tangent to the surface and
+    points away from the whorl.
     """
 
     count: int | None = Field(default=None, ge=1, le=1_000_000, description="number of guides (this or spacing)")
@@ -77,7 +79,7 @@ class Grown(Guides):
     lift: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
         default=Varied(value=0.8), description="1 stands up, 0 lies flat"
     )
-    droop: Annotated[Varied, Quantity("", 0.0, 30.0)] = Field(
+    gravity_bend: Annotated[Varied, Quantity("", 0.0, 30.0)] = Field(
         default=Varied(value=0.4), description="how much the tip hangs down"
     )
     whorl: Annotated[Direction | None, BeforeValidator(lambda value: None if value is False else value)] = Field(
@@ -101,7 +103,7 @@ class Grown(Guides):
         default=[],
         description="helper curves that are guides as they are drawn, from root to tip, besides those that grow",
     )
-    part: Parting | None = Field(default=None, description="a parting; none when absent")
+    part_line: PartLine | None = Field(default=None, description="a part line; none when absent")
     zone: list[Zone] = Field(default=[], description="parts of the head with their own length and stand")
 
     @model_validator(mode="after")
@@ -122,22 +124,22 @@ class Grown(Guides):
 
         frames = scalp.frames(seeds)
         normal = frames[:, :, 2]
-        length, lift, droop = (context.values(self, k, seeds) for k in ("length", "lift", "droop"))
+        length, lift, gravity_bend = (context.values(self, k, seeds) for k in ("length", "lift", "gravity_bend"))
         for k, zone in enumerate(self.zone):
             weight = zone.weight(seeds, context, f"guides.zone[{k}]")
             length *= 1.0 + weight * (zone.length - 1.0)
             lift *= 1.0 + weight * (zone.lift - 1.0)
-            droop *= 1.0 + weight * (zone.droop - 1.0)
-        length, lift, droop = (
+            gravity_bend *= 1.0 + weight * (zone.gravity_bend - 1.0)
+        length, lift, gravity_bend = (
             Quantity.of(self, name).clipped(values)
-            for name, values in (("length", length), ("lift", lift), ("droop", droop))
+            for name, values in (("length", length), ("lift", lift), ("gravity_bend", gravity_bend))
         )
         lift = lift[:, None]
 
         flow = self._flow(seeds, frames, context)
         start = unit(lift * normal + (1.0 - lift) * flow)
         u = (np.arange(self.points - 1) + 0.5) / (self.points - 1)
-        direction = _unit_or(flow[:, None, :], start[:, None, :] - (droop[:, None] * u)[:, :, None] * UP)
+        direction = _unit_or(flow[:, None, :], start[:, None, :] - (gravity_bend[:, None] * u)[:, :, None] * UP)
         steps = direction * (length / (self.points - 1))[:, None, None]
         points = np.concatenate([roots[:, None], roots[:, None] + np.cumsum(steps, axis=1)], axis=1)
         offsets = offsets_from_counts(np.full(len(ids), self.points))
@@ -177,8 +179,8 @@ class Grown(Guides):
         if self.direction is not None:
             painted = painted_directions(self.direction, seeds, scalp.mesh, "guides.direction")
             flow = np.where(painted.any(axis=1, keepdims=True), unit(painted), flow)
-        if self.part is not None:
-            away, falloff = self.part.away(roots, normal, scalp.middle, context.helper)
+        if self.part_line is not None:
+            away, falloff = self.part_line.away(roots, normal, scalp.middle, context.helper)
             flow = (1.0 - falloff)[:, None] * flow + falloff[:, None] * away
         return _unit_or(frames[:, :, 0], flow - np.sum(flow * normal, axis=1, keepdims=True) * normal)
 

@@ -29,7 +29,7 @@ class Locks(Operator):
 
     ``shape = Σ wᵢ Rᵢ (guideᵢ - rootᵢ)``, scaled to the weighted length. Rᵢ is the smallest rotation from the guide's
     normal to the lock's normal, and the weight wᵢ is 1/d². Guides that lean away from the nearest one by more than
-    ``apart``, as across a parting, have weight 0.
+    ``apart``, as across a part line, have weight 0.
     """
 
     count: int | None = Field(default=None, ge=1, le=1_000_000, description="number of locks (this or spacing)")
@@ -52,7 +52,7 @@ class Locks(Operator):
     )
 
     sections: Sections | None = Field(
-        default=None, description="parts of the scalp between partings, for braids and twists; none when absent"
+        default=None, description="parts of the scalp between part lines, for braids and twists; none when absent"
     )
 
     hairline: Hairline | None = Field(
@@ -99,7 +99,7 @@ class Locks(Operator):
     def _sectioned(
         self, ids: NDArray, triangle: NDArray, barycentric: NDArray, context: Context
     ) -> tuple[NDArray, NDArray, NDArray, dict[str, NDArray]]:
-        """Roots outside of partings, and the strands of sections: ids, triangles, barycentrics, attributes."""
+        """Roots outside of part lines, and the strands of sections: ids, triangles, barycentrics, attributes."""
         assert self.sections is not None
         scalp = context.scalp
         division = self.sections.divide(scalp, context.seed, context.helper)

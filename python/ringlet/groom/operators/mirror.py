@@ -11,7 +11,7 @@ from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.errors import UserError
 from ringlet.data.quantities import Quantity, Section
 from ringlet.groom.operators.operator import Context, unit
-from ringlet.groom.parting import Direction
+from ringlet.groom.part_line import Direction
 
 
 class Mirror(Section):

@@ -1,4 +1,4 @@
-"""Combing of locks away from a parting."""
+"""Combing of locks away from a part line."""
 
 from __future__ import annotations
 
@@ -12,15 +12,16 @@ from ringlet.data.curves import Curves
 from ringlet.data.quantities import Quantity, Ramped
 from ringlet.groom.operators.operator import Context, along_edges, between_edges, pulled
 from ringlet.groom.operators.shape import Shape
-from ringlet.groom.parting import Parting
+from ringlet.groom.part_line import PartLine
 
 
 class Part(Shape):
-    """Rotates every edge of a lock away from a parting and keeps its length:
-    ``edge' = |edge| · unit(edge + amount · ramp(u) · falloff · |edge| · away)``. The falloff halves every ``reach``."""
+    """Rotates every edge of a lock away from a part line and keeps its length:
+    ``edge' = |edge| · unit(edge + amount · ramp(u) · falloff · |edge| · away)``. That falloff halves with every
+    ``part_line.falloff`` of distance."""
 
     op: Literal["part"] = "part"
-    parting: Parting = Field(default=Parting(), description="where it is")
+    part_line: PartLine = Field(default=PartLine(), description="where it is")
     amount: Annotated[Ramped, Quantity("", 0.0, 10.0)] = Field(
         default=Ramped(value=1.0, ramp=[(0, 1), (1, 0.3)]), description="how much beside it: 0 leaves the shape"
     )
@@ -31,7 +32,7 @@ class Part(Shape):
         """Returns the shapes combed to their sides; edge lengths stay."""
         edges = np.diff(points, axis=1)
         normal = context.scalp.frames(curves)[:, :, 2]
-        away, falloff = self.parting.away(points[:, 0], normal, context.scalp.middle, context.helper)
+        away, falloff = self.part_line.away(points[:, 0], normal, context.scalp.middle, context.helper)
         amount = falloff * context.values(self, "amount", curves)
         ramp = self.amount.along(between_edges(edges))
         return along_edges(points[:, 0], pulled(edges, amount[:, None] * ramp, away))

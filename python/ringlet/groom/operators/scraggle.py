@@ -16,21 +16,21 @@ from ringlet.groom.operators.wander import wander
 
 
 class Scraggle(Displacement):
-    """Noise of long wavelength that grows towards the tip: ``p' = p + amount · ramp(u) · noise(s / size)``, with s the
-    arc length from the root. The noise is a B-spline with normally distributed knots, independent per lock."""
+    """Noise of long wavelength that grows towards the tip: ``p' = p + magnitude · ramp(u) · noise(s / wavelength)``,
+    with s the arc length from the root. The noise is a B-spline with normally distributed knots, one for each lock."""
 
     op: Literal["scraggle"] = "scraggle"
-    amount: Annotated[Ramped, Quantity("m", 0.0, 1.0)] = Field(
+    magnitude: Annotated[Ramped, Quantity("m", 0.0, 1.0)] = Field(
         default=Ramped(value=0.005, ramp=[(0, 0), (1, 1)]), description="how far a lock wanders (deviation at the tip)"
     )
-    size: Annotated[float, Quantity("m", 1e-3, 10.0)] = Field(
-        default=0.03, description="length over which it changes its mind"
+    wavelength: Annotated[float, Quantity("m", 1e-3, 10.0)] = Field(
+        default=0.03, description="length over which it changes"
     )
 
     def displaced(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
         """Returns the displaced shapes; roots stay."""
-        ramp = self.amount.along(np.linspace(0.0, 1.0, points.shape[1]))
-        magnitude = context.values(self, "amount", curves)[:, None] * ramp
+        ramp = self.magnitude.along(np.linspace(0.0, 1.0, points.shape[1]))
+        magnitude = context.values(self, "magnitude", curves)[:, None] * ramp
         return points + magnitude[:, :, None] * wander(
-            context.random("wander"), curves.ids, arc_lengths(points), self.size
+            context.random("wander"), curves.ids, arc_lengths(points), self.wavelength
         )

@@ -15,11 +15,11 @@ from ringlet.groom.operators.shape import Shape
 
 
 class Smooth(Shape):
-    """Removes waves shorter than ``size`` from a lock: minimises ``|p' - p|² + λ |Δ²p'|²`` with a fixed root, where λ
-    halves waves of that length. Straight locks stay unchanged."""
+    """Removes waves shorter than ``wavelength`` from a lock: minimises ``|p' - p|² + λ |Δ²p'|²`` with a fixed root,
+    where λ halves waves of that length. Straight locks stay unchanged."""
 
     op: Literal["smooth"] = "smooth"
-    size: Annotated[Varied, Quantity("m", 0.0, 10.0)] = Field(
+    wavelength: Annotated[Varied, Quantity("m", 0.0, 10.0)] = Field(
         default=Varied(value=0.02), description="length of the waves that are halved; shorter ones are taken out"
     )
 
@@ -27,7 +27,7 @@ class Smooth(Shape):
         """Returns the smoothed shapes; roots stay."""
         count = points.shape[1]
         spacing = np.maximum(arc_lengths(points)[:, -1], 1e-9) / (count - 1)
-        weight = (np.maximum(context.values(self, "size", curves), 0.0) / (2.0 * np.pi * spacing)) ** 4
+        weight = (np.maximum(context.values(self, "wavelength", curves), 0.0) / (2.0 * np.pi * spacing)) ** 4
         second = np.diff(np.eye(count), n=2, axis=0)[:, 1:]  # Δ² of all points but the root, which is the origin
         stiffness, modes = np.linalg.eigh(second.T @ second)
         filtered = 1.0 / (1.0 + weight[:, None] * np.maximum(stiffness, 0.0))

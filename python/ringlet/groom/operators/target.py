@@ -15,7 +15,7 @@ from ringlet.data.groom import SECTION
 from ringlet.data.quantities import Quantity, Varied, refuse
 from ringlet.groom.operators.operator import Context, arc_lengths, evenly, on_splines, unit
 from ringlet.groom.operators.shape import Shape
-from ringlet.groom.parting import Direction
+from ringlet.groom.part_line import Direction
 
 PLANE = 0.08  # default distance of the plane from the middle of the scalp [m]
 LINE_POINTS = 2000  # of a drawn line

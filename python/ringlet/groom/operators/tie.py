@@ -19,7 +19,7 @@ from ringlet.groom.coil import Coil, on_scalp
 from ringlet.groom.operators.operator import UP, Context, arc_lengths, at_lengths, grid, unit, with_lock_points
 from ringlet.groom.operators.shape import Shape
 from ringlet.groom.operators.tied import TO_TIE
-from ringlet.groom.parting import Direction
+from ringlet.groom.part_line import Direction
 from ringlet.groom.worn import Worn, revolved, ring
 
 PATH_POINTS = 24  # of the path over the head, and of that after the tie
@@ -39,7 +39,7 @@ class Tie(Shape):
     the skin and raised by up to ``rise`` midway. Each lock has a place of its own in the tie.
     """
 
-    op: Literal["tie", "gather"] = "tie"
+    op: Literal["tie"] = "tie"
     curve: str | None = Field(
         default=None,
         description="name of helper curves that begin at ties, from `[curves]`: the centre lines of tails. Locks go to "
@@ -63,7 +63,7 @@ class Tie(Shape):
         description="how high the uppermost hair lies over the skin half-way to the tie, with a ramp from root to tie",
     )
     after: Literal["tail", "ball", "bun"] = Field(default="tail", description="what the hair becomes after the tie")
-    spread: Annotated[Ramped, Quantity("", 0.0, 20.0, product=False)] = Field(
+    flare: Annotated[Ramped, Quantity("", 0.0, 20.0, product=False)] = Field(
         default=Ramped(value=2.0, ramp=[(0, 0), (1, 1)]),
         description="radius of a tail, as a multiple of that in the tie; its ramp goes from that in the tie, 0, to it",
     )
@@ -84,14 +84,6 @@ class Tie(Shape):
 
     turns: ClassVar[bool] = True
     starter: ClassVar[Mapping[str, Any]] = {"toward": [0, 1, -0.35]}
-
-    @model_validator(mode="before")
-    @classmethod
-    def _former_name(cls, data: Any) -> Any:
-        """Reads the settings of ``gather``, the former name of a tail along a curve."""
-        if isinstance(data, dict) and data.get("op") == "gather" and "tie" in data:
-            return {**{key: value for key, value in data.items() if key != "tie"}, "curve": data["tie"]}
-        return data
 
     @model_validator(mode="after")
     def _one_place(self) -> Tie:
@@ -177,8 +169,8 @@ class Tie(Shape):
         over_head = self._over_head(curves, tie.place + tie.value["radius"] * offset, context)
         tied = arc_lengths(over_head)[:, -1]
         if self.after == "tail":
-            spread = context.values(self, "spread", curves)
-            whole = np.concatenate([over_head, self._tail(points, offset, spread, tie)[:, 1:]], axis=1)
+            flare = context.values(self, "flare", curves)
+            whole = np.concatenate([over_head, self._tail(points, offset, flare, tie)[:, 1:]], axis=1)
             return at_lengths(whole, arc_lengths(points)), tied
         after = self._ball(disk, offset, tie) if self.after == "ball" else self._bun(offset, tie, context)
         whole = np.concatenate([over_head, after[:, 1:]], axis=1)
@@ -210,14 +202,14 @@ class Tie(Shape):
         path[:, 0] = roots
         return path
 
-    def _tail(self, points: NDArray, offset: NDArray, spread: NDArray, tie: Place) -> NDArray[np.float64]:
-        """Paths of a tail, shape (count, k, 3), for the spread of each lock, shape (count,)."""
+    def _tail(self, points: NDArray, offset: NDArray, flare: NDArray, tie: Place) -> NDArray[np.float64]:
+        """Paths of a tail, shape (count, k, 3), for the flare of each lock, shape (count,)."""
         line = tie.line
         if line is None:
             run = np.linspace(0.0, max(1.1 * float(arc_lengths(points)[:, -1].max()), 1e-3), 3 * PATH_POINTS)
             direction = unit(tie.axis - (run / tie.value["fall"])[:, None] * UP)
             line = tie.place + np.concatenate([np.zeros((1, 3)), np.cumsum(direction[:-1] * run[1], axis=0)])
-        wider = (spread - 1.0)[:, None] * self.spread.along(np.linspace(0.0, 1.0, len(line)))
+        wider = (flare - 1.0)[:, None] * self.flare.along(np.linspace(0.0, 1.0, len(line)))
         width = tie.value["radius"] * np.maximum(1.0 + wider, 0.0)
         tail: NDArray[np.float64] = line[None] + width[:, :, None] * offset[:, None, :]
         return tail

@@ -8,14 +8,14 @@ from numpy.typing import NDArray
 from ringlet.data.random import Random
 
 
-def wander(random: Random, ids: NDArray, along: NDArray, size: float) -> NDArray[np.float64]:
-    """Noise of deviation 1 and wavelength ``size`` [m] that is 0 at the root, shape (count, points, 3).
+def wander(random: Random, ids: NDArray, along: NDArray, wavelength: float) -> NDArray[np.float64]:
+    """Noise of deviation 1 and of that wavelength [m] that is 0 at the root, shape (count, points, 3).
 
     The knots are normally distributed and independent per lock.
 
     along: arc length from the root [m], shape (count, points)
     """
-    at = along / size
+    at = along / wavelength
     knot_count = int(at.max()) + 4
     knots = random.normals(ids, 3 * knot_count).reshape(len(ids), knot_count, 3)
     i = at.astype(int)

@@ -14,6 +14,7 @@ from pxr import Sdf, Usd, UsdGeom, Vt
 
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.errors import UserError
+from ringlet.data.former_names import ATTRIBUTES
 from ringlet.data.groom import GROOM
 from ringlet.data.mesh import Mesh
 from ringlet.data.pigment import DYE, FIBER, curve_reflectance, display_color
@@ -43,7 +44,7 @@ ID_HALVES = ("id_high", "id_low")  # halves of 64-bit ids, for programs without 
 COMMON = {"rest", "skinprim", "skinprimuv", "st", "surface_uv_coordinate", "guide_curve_index", "clumpid", *ID_HALVES}
 COMMON |= {"groom_id", "groom_group_id", "groom_guide", "groom_root_uv", "groom_color"}
 COMMON |= {"displayColor", "displayOpacity"}
-INNER = {"root_triangle", "root_barycentric", "lock", "guide_id", "nail", "tied", GROOM}
+INNER = {"root_triangle", "root_barycentric", "lock", "guide_id", "pin", "tied", GROOM}
 INNER |= {"groomed", "stiffened", "off", "moving"}
 CONSTANT = {DYE, *FIBER}  # attributes of curves that are written once where all curves have the same
 MOST_WIDTH = 1.0  # largest diameter of a curve that is written [m]
@@ -139,7 +140,8 @@ def add_own_attributes(curves: Curves, prim: Usd.Prim, where: str, skipped: tupl
     for primvar in UsdGeom.PrimvarsAPI(prim).GetPrimvarsWithAuthoredValues():
         name = primvar.GetPrimvarName()
         if name not in (f"{OWN}id", *COMMON) and not name.startswith(skipped):
-            _add_own(curves, primvar, original_name(primvar.GetAttr(), name.removeprefix(OWN)), where)
+            own = original_name(primvar.GetAttr(), name.removeprefix(OWN))
+            _add_own(curves, primvar, ATTRIBUTES.get(own, own), where)
 
 
 def define_curves(

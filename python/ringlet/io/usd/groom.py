@@ -26,6 +26,7 @@ from ringlet.data.accessory import Accessory
 from ringlet.data.binding import check_roots, root_places
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
+from ringlet.data.former_names import present
 from ringlet.data.groom import GROOM as ROW
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Mesh
@@ -200,7 +201,7 @@ def groom_at(source: Source, *, bound: bool = True) -> Groom:
         hidden=list(_get(root, "hidden") or []),
         cage=source.cage,
         space=source.space,
-        hairs=parse_json(source, _get(root, "hairs") or "{}", "ringlet:hairs"),
+        hairs=_settings(source, root, "hairs") or {},
         color=_settings(source, root, "color"),
         fiber=_settings(source, root, "fiber"),
         grooms=_grooms(source, root),
@@ -228,9 +229,12 @@ def read_accessories(source: Source) -> list[tuple[Usd.Prim, Accessory]]:
 
 
 def _settings(source: Source, root: Usd.Prim, name: str) -> dict[str, Any] | None:
-    """Settings of a table that a recipe may lack."""
+    """Settings of a table that a recipe may lack, by their present names."""
     text = _get(root, name)
-    return None if text is None else parse_json(source, text, f"ringlet:{name}")
+    if text is None:
+        return None
+    where = f"ringlet:{name}"
+    return present({name: parse_json(source, text, where)}, f"{source.path}: {where}")[0][name]
 
 
 def _grooms(source: Source, root: Usd.Prim) -> dict[str, dict[str, Any]]:
@@ -240,6 +244,7 @@ def _grooms(source: Source, root: Usd.Prim) -> dict[str, dict[str, Any]]:
         isinstance(one, dict) and one.keys() >= OF_EACH for one in grooms.values()
     ):
         raise UserError(f"{source.path}: ringlet:grooms is damaged; make the groom again")
+    grooms = present({"grooms": grooms}, f"{source.path}: ringlet:grooms")[0]["grooms"]
     for path in (LOCKS, GUIDES) if grooms else ():
         rows = UsdGeom.PrimvarsAPI(source.stage.GetPrimAtPath(path)).GetPrimvar(f"ringlet:{ROW}").Get()
         if rows is None or not len(rows) or min(rows) < 0 or max(rows) >= len(grooms) or list(rows) != sorted(rows):

@@ -124,13 +124,13 @@ class Numbers(Message):
 class Measured(Message):
     """Measurements of a groom that is not a draft. inside: number of lock points in the head.
 
-    ``depth`` and ``nail`` are overlays: a byte for each point of the locks, 255 for the end of the scale; empty for
+    ``depth`` and ``pin`` are overlays: a byte for each point of the locks, 255 for the end of the scale; empty for
     none.
     """
 
     kind: Literal["measured"] = "measured"
     inside: int
-    arrays: ClassVar[dict[str, str]] = {"depth": "u1", "nail": "u1"}
+    arrays: ClassVar[dict[str, str]] = {"depth": "u1", "pin": "u1"}
 
 
 class Frame(Message):

@@ -44,7 +44,7 @@ class Paint(Message):
 class Draw(Message):
     """Draws the helper curve that a setting names; a setting without one gets a new curve, a list one more.
 
-    place:  of the setting in the recipe, such as ``["guides", "part", "line"]``
+    place:  of the setting in the recipe, such as ``["guides", "part_line", "curve"]``
     points: of the stroke [m]
     """
 

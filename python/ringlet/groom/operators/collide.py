@@ -1,4 +1,4 @@
-"""Removal of locks from the head and from what is worn."""
+"""Collision of locks with the head and with what is worn, at rest."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ringlet.groom.operators.operator import Context, Operator, packed
 from ringlet.groom.shares import LAID
 
 
-class Clean(Operator):
+class Collide(Operator):
     """Moves points below the skin, or closer to it than ``margin``, out along the surface normal, and likewise out of
     all other visible surfaces in the head's file, such as a shirt. The margin grows from 0 at the root. A lock that
     heads straight into a surface is laid along it. Locks keep their lengths. Cornrows lie on the skin as they are;

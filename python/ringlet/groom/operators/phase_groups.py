@@ -14,8 +14,8 @@ from ringlet.groom.groups import Apart, leaders
 from ringlet.groom.operators.operator import Context
 
 
-class PhaseLock(Section):
-    """Locks the phase of neighbouring curls: from the root on, phase and width of a lock blend into those of the
+class PhaseGroups(Section):
+    """Groups of neighbouring curls in phase: from the root on, phase and width of a lock blend into those of the
     central lock of its group."""
 
     size: Annotated[float, Quantity("m", 1e-3, 1.0)] = Field(default=0.01, description="distance of the groups")
@@ -36,7 +36,7 @@ class PhaseLock(Section):
         leader = leaders(shapes, self.size, self.apart, context.scalp, context.seed + 2)
         return {
             "leader": leader.astype(np.int32),
-            "join": np.minimum(context.values(self, "amount", curves, "phase_lock."), 1.0),
-            "join_over": context.values(self, "length", curves, "phase_lock."),
-            "cohesion": np.minimum(context.values(self, "cohesion", curves, "phase_lock."), 1.0),
+            "join": np.minimum(context.values(self, "amount", curves, "phase_groups."), 1.0),
+            "join_over": context.values(self, "length", curves, "phase_groups."),
+            "cohesion": np.minimum(context.values(self, "cohesion", curves, "phase_groups."), 1.0),
         }

@@ -1,4 +1,4 @@
-"""Sections between drawn partings: the connected parts of a chart of the scalp."""
+"""Sections between drawn part lines: the connected parts of a chart of the scalp."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from scipy.spatial import KDTree
 
 NEIGHBOURS = 8  # samples that a sample, or a place, is connected with
 FEWEST = 4  # samples of a section
-LONGER = 0.25  # of a parting at both ends, in sizes of a section: it need not reach the border to the millimetre
+LONGER = 0.25  # of a part line at both ends, in sizes of a section: it need not reach the border to the millimetre
 
 
-class DrawnPartings:
+class DrawnPartLines:
     """The parts of a chart between polylines. Two samples are connected where they are near and no line separates them.
 
     A part is named by its first sample, so that another line renames only the parts that it divides.

@@ -13,7 +13,7 @@ from ringlet import Clock, build_groom, check_groom, read_groom, read_recipe
 HEAD = Path(__file__).parents[1] / "examples" / "child" / "head.usdc"
 
 RECIPE = """
-ringlet = 1
+ringlet = 2
 seed = 3
 [scalp]
 file = '{head}'
@@ -23,7 +23,7 @@ region = "{region}"
 count = 300
 length = {{ value = {length}, vary = 0.1 }}
 lift = {lift}
-droop = {droop}
+gravity_bend = {gravity_bend}
 [locks]
 count = {locks}
 points = {points}
@@ -32,7 +32,7 @@ op = "clump"
 size = 2
 [curl]
 preset = "{preset}"
-[clean]
+[collide]
 margin = "{margin} mm"
 """
 
@@ -43,7 +43,7 @@ def run(
     preset: str = "4A",
     length: float = 9.0,
     lift: float = 0.7,
-    droop: float = 0.8,
+    gravity_bend: float = 0.8,
     margin: float = 1.0,
     head: str = "",
     region: str = "scalp",
@@ -52,8 +52,8 @@ def run(
 ) -> dict[str, Any]:
     """Grooms a head, checks the groom, repairs it and checks it again.
 
-    length:  length of the guides [cm]; ``lift`` and ``droop`` as in a recipe
-    margin:  margin of the recipe's clean stage [mm]
+    length:  length of the guides [cm]; ``lift`` and ``gravity_bend`` as in a recipe
+    margin:  margin of the recipe's collide stage [mm]
     head:    USD or OBJ file instead of the example's; hair grows on its ``region``
     crown:   height of the hair region below the top, for an OBJ file without regions [m]; on the face half of it
     picture: path of pictures of the places, without ``-found.png`` and ``-left.png``
@@ -63,8 +63,15 @@ def run(
         source = Path(head).resolve() if head else HEAD
         if crown:
             source, region = with_crown(source, crown, Path(folder)), "crown"
-        path, fixed = Path(folder) / "clean.recipe.toml", Path(folder) / "fixed.usdc"
-        values = {"length": length, "lift": lift, "droop": droop, "locks": locks, "points": points, "preset": preset}
+        path, fixed = Path(folder) / "hair.recipe.toml", Path(folder) / "fixed.usdc"
+        values = {
+            "length": length,
+            "lift": lift,
+            "gravity_bend": gravity_bend,
+            "locks": locks,
+            "points": points,
+            "preset": preset,
+        }
         mesh = '""' if head else '"/child/skin"'
         text = RECIPE.format(head=source.as_posix(), mesh=mesh, region=region, margin=margin, **values)
         path.write_text(text.replace('mesh = ""\n', ""))
@@ -76,7 +83,7 @@ def run(
             after = check_groom(groom, fixed=fixed, picture=f"{picture}-left.png" if picture else None)
         lengths = read_groom(fixed).locks.lengths() / groom.locks.lengths()
     return clock.result(
-        "clean",
+        "collide",
         {**values, "margin": margin, "head": head, "region": region, "crown": crown},
         per="repair",
         warm_up=0,

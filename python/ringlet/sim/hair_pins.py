@@ -1,4 +1,4 @@
-"""Nails: vertices beyond the roots that are held to the skin, rigidly or by springs."""
+"""Pins: vertices beyond the roots that are held to the skin, rigidly or by springs."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ HALF_TIME = 0.02  # time constant of a hold of 1/2 [s]
 
 
 def held_vertices(locks: Curves, from_root: int) -> NDArray[np.bool_]:
-    """The vertices that move rigidly with the skin, shape (n,): some from each root, and those of rigid nails."""
+    """The vertices that move rigidly with the skin, shape (n,): some from each root, and those of rigid pins."""
     number = np.arange(len(locks.points)) - np.repeat(locks.offsets[:-1], locks.counts)
     held = number < from_root
-    return held | (locks.point["nail"] >= RIGID) if "nail" in locks.point else held
+    return held | (locks.point["pin"] >= RIGID) if "pin" in locks.point else held
 
 
 def rigid_elements(held: NDArray[np.bool_]) -> tuple[NDArray[np.bool_], NDArray[np.bool_], NDArray[np.bool_]]:
@@ -34,7 +34,7 @@ def rigid_elements(held: NDArray[np.bool_]) -> tuple[NDArray[np.bool_], NDArray[
 def spring_forces(
     locks: Curves, strands: Strands, targets: NDArray[np.float64], dt: float, gravity: Sequence[float]
 ) -> NDArray[np.float64] | None:
-    """The forces [N] that draw vertices of soft nails to their targets [m], shape (n, 3); None where there are none.
+    """The forces [N] that draw vertices of soft pins to their targets [m], shape (n, 3); None where there are none.
 
     In a step they move a vertex that is free otherwise by the fraction ``1 - exp(-dt / τ)`` of its distance to the
     target, with ``τ = 0.02 s · (1 - w) / w`` for a hold w. However firm, it never overshoots.
@@ -51,7 +51,7 @@ def spring_forces(
 
 
 def spring_fraction(locks: Curves, dt: float) -> NDArray[np.float64]:
-    """The fraction of its distance to the target that a soft nail moves a vertex in ``dt`` [s], shape (n,)."""
-    hold = np.asarray(locks.point.get("nail", np.zeros(len(locks.points))), np.float64)
+    """The fraction of its distance to the target that a soft pin moves a vertex in ``dt`` [s], shape (n,)."""
+    hold = np.asarray(locks.point.get("pin", np.zeros(len(locks.points))), np.float64)
     hold = np.where(hold < RIGID, hold, 0.0)
     return 1.0 - np.exp(-dt * hold / (HALF_TIME * (1.0 - hold)))

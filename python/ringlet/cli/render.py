@@ -1,4 +1,4 @@
-"""``ringlet picture``: a path-traced still, or a contact sheet of the clip."""
+"""``ringlet render``: a path-traced still, or a contact sheet of the clip."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ringlet.cli.settings import with_settings
 
 
 @with_settings()
-def picture(
+def render(
     stage: Annotated[
         Path, typer.Argument(metavar="STAGE", help="A USD file with hairs, and with the head if it is to be seen.")
     ],
@@ -41,15 +41,15 @@ def picture(
     report: Report = None,
     as_json: Json = False,
 ) -> None:
-    """Pictures a STAGE: one frame, path-traced, or with --sheet a page of small ones.
+    """Renders a STAGE: one frame, path-traced, or with --sheet a page of small ones.
 
     With --contacts, beads show contacts. By force: blue to red, over three decades up to the strongest in a hundred.
     By gap: red where hardly any gap is left. By start: all places that overlapped at the start, red where worst.
 
-    Examples: ringlet picture hair.usdc -o still.png --frame 24 --view side · ringlet picture hair.usdc --sheet ·
-    ringlet picture hair.usdc --look-at 50000000 --f-stop 2.8 --light window
+    Examples: ringlet render hair.usdc -o still.png --frame 24 --view side · ringlet render hair.usdc --sheet ·
+    ringlet render hair.usdc --look-at 50000000 --f-stop 2.8 --light window
     """
-    with ringlet.Run("picture", report) as run, shown_progress() as progress:
+    with ringlet.Run("render", report) as run, shown_progress() as progress:
         with run.stage("sheet" if sheet else "still", output):
             if contacts is not None:
                 ringlet.write_touches_picture(stage, output, show=contacts, frame=frame, progress=progress, **settings)

@@ -1,4 +1,4 @@
-"""Partings: hair turns away to both sides of a plane or of a drawn part line."""
+"""Part lines: hair turns away to both sides of a plane or of drawn curves."""
 
 from __future__ import annotations
 
@@ -30,38 +30,38 @@ def _points_somewhere(vector: tuple[float, float, float]) -> tuple[float, float,
 Direction = Annotated[Vector, AfterValidator(_points_somewhere)]
 
 
-class Parting(Section):
-    """A parting: hair on each side of a plane, or of a drawn part line, turns away from it."""
+class PartLine(Section):
+    """A part line: hair on each side of a plane, or of drawn curves, turns away from it."""
 
-    line: str | None = Field(
-        default=None, description="name of helper curves along the parting, from `[curves]`; a plane when absent"
+    curve: str | None = Field(
+        default=None, description="name of helper curves along it, from `[curves]`; a plane when absent"
     )
     across: Direction = Field(default=(1.0, 0.0, 0.0), description="direction from one side of the plane to the other")
     offset: Annotated[float, Quantity("m", -1.0, 1.0)] = Field(
         default=0.0, description="how far the plane is from the middle of the scalp, along 'across'"
     )
-    reach: Annotated[float, Quantity("m", 1e-3, 1.0)] = Field(
-        default=0.04, description="distance at which hair has half forgotten the parting"
+    falloff: Annotated[float, Quantity("m", 1e-3, 1.0)] = Field(
+        default=0.04, description="distance at which its effect is half of that on it"
     )
 
     def away(
         self, places: NDArray, normals: NDArray, middle: NDArray, helper: Callable[[str, str], Curves]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Unit directions away from the parting, shape (n, 3), and its falloff with distance from 1 to 0, shape (n,).
+        """Unit directions away from it, shape (n, 3), and its falloff with distance from 1 to 0, shape (n,).
 
         places, normals: positions [m] and normals of the roots, shape (n, 3)
         middle:          centre of the scalp [m]
         helper:          returns the helper curves of a name for a setting
         """
-        if self.line is None:
+        if self.curve is None:
             across = np.array(self.across) / max(float(np.linalg.norm(self.across)), 1e-12)
             side = (places - middle) @ across - self.offset
-            return np.sign(side)[:, None] * across, 0.5 ** (np.abs(side) / self.reach)
-        foot, along = _nearest(places, helper(self.line, "line"))
+            return np.sign(side)[:, None] * across, 0.5 ** (np.abs(side) / self.falloff)
+        foot, along = _nearest(places, helper(self.curve, "curve"))
         across = np.cross(along, normals)
         across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-12)
         side = np.sign(np.sum((places - foot) * across, axis=1))
-        return side[:, None] * across, 0.5 ** (np.linalg.norm(places - foot, axis=1) / self.reach)
+        return side[:, None] * across, 0.5 ** (np.linalg.norm(places - foot, axis=1) / self.falloff)
 
 
 def _nearest(places: NDArray, lines: Curves) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
