@@ -45,9 +45,7 @@ def test_every_number_of_a_command_has_finite_bounds(command, tmp_path):
 
 
 def test_numbers_are_found():
-    assert {("sim", "--threads"), ("wedge", "--workers"), ("render", "--samples"), ("edit", "--freeze")} <= set(
-        OPTIONS
-    )
+    assert {("sim", "--threads"), ("wedge", "--workers"), ("render", "--samples"), ("edit", "--freeze")} <= set(OPTIONS)
 
 
 def test_counts_of_the_library_have_the_same_bounds(tmp_path):
