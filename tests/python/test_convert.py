@@ -113,10 +113,28 @@ def test_points_survive_every_format_in_every_unit_and_axis(hair, tmp_path, suff
 
 def test_what_a_format_cannot_hold_is_reported(hair, tmp_path):
     lost = " ".join(convert(hair, tmp_path / "a.obj")["lost"])
-    for part in ("without 5 guides", "no surfaces", "3 frames became the rest pose", "no widths", "st"):
+    for part in ("without 5 guides", "no surfaces", "no frame of 3 is chosen", "no widths", "st"):
         assert part in lost
     assert "one width for each curve" in " ".join(convert(hair, tmp_path / "a.tfx")["lost"])
     assert convert(hair, tmp_path / "b.usdc")["lost"] == []
+
+
+@pytest.mark.parametrize("suffix", [".obj", ".hair", ".tfx"])
+def test_a_format_of_one_pose_holds_that_of_the_frame_that_is_chosen(hair, tmp_path, suffix):
+    path = tmp_path / f"a{suffix}"
+    done = convert(hair, path, only="hairs", frames=(3, 3), unit=1.0)
+    assert f"{suffix if suffix != '.obj' else 'OBJ'} holds one pose: that of frame 3" in done["lost"]
+    rest = hairs_of(make_groom(tmp_path / "head.usdc")).points
+    np.testing.assert_allclose(read_curves(path).points, rest + 2 * RISE, atol=1e-6)
+
+
+@pytest.mark.parametrize("name", ["a.usdc", pytest.param("a.abc", marks=needs_alembic)])
+def test_a_file_of_one_frame_keeps_its_pose_and_the_rest_pose(hair, tmp_path, name):
+    convert(hair, tmp_path / name, frames=(3, 3))
+    after, _, frames, _ = seen(tmp_path / name)
+    one, (pose,) = after["hairs"]
+    assert frames.tolist() == [3]
+    np.testing.assert_allclose(pose, one.curves.points + 2 * RISE, atol=1e-6)
 
 
 def test_strands_and_points_are_subsampled_with_motion_and_widths(hair, tmp_path):

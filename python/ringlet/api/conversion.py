@@ -50,7 +50,7 @@ def convert(
     unit, up: unit [m] and up-axis of the target; by default centimetres and Y for Alembic, else those of the source
     only:     leaves the other curves out
     bodies:   writes surfaces too, where the format holds any
-    frames:   first and last frame; all by default
+    frames:   first and last frame; all by default. A format of one pose holds that of the first, or the rest pose
     fraction: share of the curves to keep, in (0, 1], the same ones every time; with ``wider`` these make up by their
               width for those left out
     points:   points of each curve, evenly spaced along it; as they are by default
@@ -71,7 +71,12 @@ def convert(
         space = StageSpace(unit or default.meters_per_unit, up or default.up_axis, scene.space.fps)
         scene = replace(scene, frames=_within(scene, frames, source), bodies=scene.bodies if bodies else [])
         scene.sets = [_thinned(one, fraction, wider, points) for one in _chosen(scene, only, source)]
+        one_pose = frames is not None and not kind.several
+        if one_pose:
+            scene = scene.posed(scene.frames[0])
         lost = io.write_scene(scene, target, space)
+        if one_pose:
+            lost.insert(0, f"{kind.name} holds one pose: that of frame {scene.frames[0]:g}")
     written = scene.sets if kind.several else scene.shown
     return {
         "hairs": sum(len(one.curves) for one in written if not one.guide),

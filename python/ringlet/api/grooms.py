@@ -99,6 +99,9 @@ def groom_inputs(recipe: Recipe, memory: Memory | None = None, notes: list[str] 
 
     if recipe.scalp_file is None:
         raise UserError(f"{recipe.path or 'recipe'}: scalp.file is missing; name the file of the head")
+    if not recipe.scalp_file.exists():
+        where = recipe.path or "recipe"
+        raise UserError(f"{where}: scalp.file is {recipe.scalp_file}, but there is no such file; check the name")
     chosen = recipe.scalp
     cage = chosen.surface == "cage"
     scalp, meshes_of_head = _cached(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,6 +47,11 @@ class HairScene:
     bodies: list[tuple[Mesh, Clip | None]] = field(default_factory=list)
     frames: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
     space: StageSpace = field(default_factory=StageSpace)
+
+    def posed(self, frame: float) -> HairScene:
+        """The scene as it stands at a frame: its curves do not move."""
+        sets = [replace(one, curves=one.curves.with_points(one.points(frame)), motion=None) for one in self.sets]
+        return replace(self, sets=sets)
 
     @property
     def shown(self) -> list[CurveSet]:

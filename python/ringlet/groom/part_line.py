@@ -38,7 +38,9 @@ class PartLine(Section):
     )
     across: Direction = Field(default=(1.0, 0.0, 0.0), description="direction from one side of the plane to the other")
     offset: Annotated[float, Quantity("m", -1.0, 1.0)] = Field(
-        default=0.0, description="how far the plane is from the middle of the scalp, along 'across'"
+        default=0.0,
+        description="distance of the plane from the middle of the scalp along 'across', by default to the left of a "
+        "head that faces +z",
     )
     falloff: Annotated[float, Quantity("m", 1e-3, 1.0)] = Field(
         default=0.04, description="distance at which its effect is half of that on it"

@@ -93,7 +93,7 @@ class _Reader:
         """Everything below the top object."""
         sets, meshes = list[CurveSet](), list[tuple[Any, list[Any]]]()
         found = list(self._objects(top, []))
-        samplings = [schema.getTimeSampling() for schema, _ in found if schema.getNumSamples() > 1]
+        samplings = [schema.getTimeSampling() for schema, _ in found if self._moves(schema)]
         samplings += [xform.getTimeSampling() for _, above in found for xform in above if xform.getNumSamples() > 1]
         cycles = [sampling.getTimeSamplingType().getTimePerCycle() for sampling in samplings]
         if cycles and 1e-5 < min(cycles) < 100.0:
@@ -102,7 +102,7 @@ class _Reader:
             times = {
                 round(timed.getTimeSampling().getSampleTime(k) * self.fps, 3)
                 for timed in (schema, *above)
-                if timed.getNumSamples() > 1
+                if self._moves(timed)
                 for k in range(timed.getNumSamples())
             }
             self.frames |= {time for time in times if time == round(time)}
@@ -131,6 +131,16 @@ class _Reader:
                     self.names[id(schema)] = child.getName() if own else parent.getName()
                     yield schema, path
             yield from self._objects(child, path)
+
+    def _moves(self, timed: Any) -> bool:
+        """Whether a schema has positions that are not its rest pose: several samples, or one at a frame."""
+        if timed.getNumSamples() > 1:
+            return True
+        if not isinstance(timed, self.library.geom.ICurvesSchema):
+            return False
+        parameters, sampling = timed.getArbGeomParams(), timed.getTimeSampling()
+        is_timed = sampling.getTimeSamplingType().getTimePerCycle() != 1.0 or sampling.getSampleTime(0) != 0.0
+        return is_timed and parameters.valid() and parameters.getPropertyHeader("rest") is not None
 
     def _where(self, schema: Any) -> str:
         return f"{self.path} {self.names[id(schema)]}"

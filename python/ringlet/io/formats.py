@@ -126,7 +126,7 @@ def _one_set(scene: HairScene, kind: Format) -> tuple[Curves, list[str]]:
     if scene.bodies:
         lost.append(f"{kind.name} holds no surfaces: without {', '.join(mesh.name for mesh, _ in scene.bodies)}")
     if any(one.motion for one in shown):
-        lost.append(f"{kind.name} holds no motion: {len(scene.frames)} frames became the rest pose")
+        lost.append(f"{kind.name} holds one pose: the rest pose, as no frame of {len(scene.frames)} is chosen")
     if kind.even and (curves.counts != curves.counts[0]).any():
         count = int(curves.counts.max())
         lost.append(f"{kind.name} holds curves of equal numbers of points: all were resampled to {count}")

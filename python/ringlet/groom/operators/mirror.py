@@ -20,7 +20,9 @@ class Mirror(Section):
 
     across: Direction = Field(default=(1.0, 0.0, 0.0), description="direction from the plane to the side that is kept")
     offset: Annotated[float, Quantity("m", -1.0, 1.0)] = Field(
-        default=0.0, description="how far the plane is from the middle of the scalp, along 'across'"
+        default=0.0,
+        description="distance of the plane from the middle of the scalp along 'across', by default to the left of a "
+        "head that faces +z",
     )
     seam: Annotated[float, Quantity("m", 0.0, 0.1)] = Field(
         default=0.002, description="guides with a root nearer to the plane than this are on it"

@@ -58,7 +58,9 @@ def open_usd_scene(path: Path) -> Iterator[HairScene]:
             found = [prim for prim in found if str(prim.GetPath()) != GUIDES]
         found = [prim for prim in found if UsdGeom.Imageable(prim).ComputeVisibility() != UsdGeom.Tokens.invisible]
         surfaces = shown_surfaces(source)
-        times = [time for prim in found or surfaces for time in motion_samples(source, prim)]
+        times = [time for prim in found for time in _posed_at(source, prim)]
+        if not found:
+            times = [time for prim in surfaces for time in motion_samples(source, prim)]
         frames = whole_frames(min(times), max(times), str(path)) if times else np.empty(0)
         sets = [*_made_on_demand(source), *(_curve_set(source, prim) for prim in found)]
         record(path, *layer_files(source.stage))  # the caller may write while the stage is open
@@ -85,7 +87,16 @@ def _curve_set(source: Source, prim: Usd.Prim) -> CurveSet:
             )
         return points
 
-    return CurveSet(name, curves, guide, motion if motion_samples(source, prim) else None)
+    return CurveSet(name, curves, guide, motion if _posed_at(source, prim) else None)
+
+
+def _posed_at(source: Source, prim: Usd.Prim) -> list[float]:
+    """Time codes of the poses of curves that are not their rest pose: those of motion, or one sample over a default."""
+    if samples := motion_samples(source, prim):
+        return samples
+    points = UsdGeom.BasisCurves(prim).GetPointsAttr()
+    times = points.GetTimeSamples()
+    return times if times and points.Get(Usd.TimeCode.Default()) is not None else []
 
 
 def _made_on_demand(source: Source) -> Iterator[CurveSet]:
