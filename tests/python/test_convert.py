@@ -200,6 +200,7 @@ def test_wrong_requests_are_refused_in_one_line_and_leave_nothing(hair, tmp_path
         ((tmp_path / "none.usdc", tmp_path / "a.obj"), "there is no such file"),
         ((hair, tmp_path / "a.usdc", "--from-unit", "mm"), "stores its unit"),
         ((hair, tmp_path / "a.usdc", "--frames", "7:9"), "no frame from 7 to 9; it holds 1 to 3"),
+        ((hair, tmp_path / "a.usdc", "--frames", "1:2", "--frame", "1"), "leave one of them out"),
         ((tmp_path / "head.usdc", tmp_path / "a.obj"), "no curves to write"),
         ((tmp_path / "head.usdc", tmp_path / "a.usdc", "--only", "hairs"), "has no hairs"),
     ):

@@ -29,6 +29,10 @@ SHOT = 'ringlet = 2\ngroom = "a.usdc"\nframes = [1, 2]\n'
         ("groom = 5", "groom is 5; must be the name of a file"),
         ("strands = { radius = true }", "strands.radius is true; must be a number"),
         ("strands = { radius = '1e-3' }", "strands.radius is '1e-3'; must be a number"),
+        (
+            "strands = { radius = '0.4 mm' }",
+            "radius is '0.4 mm'; must be a number, 0.0004 in metres",
+        ),
         ("strands = { radius = 1e308 }", "strands.radius is 1e+308; must be at most 0.1"),
         (f"strands = {{ radius = {10**400} }}", "strands.radius is 10^400 or more; must be a number of fewer"),
         ("strands = { limit_twist = 'x' }", "strands.limit_twist is 'x'; must be true or false"),

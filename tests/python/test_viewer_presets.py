@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 from pages import page, serving
 from PIL import Image
-from ringlet.data.quantities import UNITS, along
+from ringlet.data.lengths import UNITS
+from ringlet.data.quantities import along
 from ringlet.data.share import share
 from ringlet.viewer.mixing import mix, stated
 from ringlet.viewer.presets import LOOK, looks

@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 import typer
 
 import ringlet
-from ringlet.cli.options import UNITS, Axis, Frames, FromUnit, FromUp, Json, Threads, Unit
+from ringlet.cli.options import UNITS, Axis, Frames, FromUnit, FromUp, Json, Threads, Unit, frame_option
 from ringlet.cli.output import wrote
 
 
@@ -24,6 +24,7 @@ def convert(
     from_unit: FromUnit = None,
     from_up: FromUp = None,
     frames: Frames = None,
+    frame: Annotated[int | None, frame_option("One frame, in place of --frames.")] = None,
     only: Annotated[
         Literal["hairs", "guides"] | None,
         typer.Option("--only", help="Leave the other curves out.", show_default=False),
@@ -52,6 +53,10 @@ def convert(
 
     Examples: ringlet convert hair.usdc hair.abc · ringlet convert mohawk.tfx mohawk.usdc --from-unit cm --points 16
     """
+    if frame is not None:
+        if frames is not None:
+            raise ringlet.UserError(f"--frame {frame}: does not go together with --frames; leave one of them out")
+        frames = (frame, frame)
     done: dict[str, Any] = ringlet.convert(
         source,
         target,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
@@ -28,13 +27,13 @@ from ringlet.data import explain as messages
 from ringlet.data import settings
 from ringlet.data.errors import UserError
 from ringlet.data.explain import Location, shown
+from ringlet.data.lengths import UNITS, measure
 from ringlet.data.random import Random
 from ringlet.data.settings import refuse
 
 MAX_FACTOR = 1e6  # of a ramp
 LengthUnit = Literal["m", "dm", "cm", "mm", "in"]
 PER_CM2 = "/cm2"  # unit of a density
-UNITS: dict[str, float] = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "in": 0.0254}
 
 
 class Section(settings.Section):
@@ -99,7 +98,10 @@ class Quantity:
         """``value`` in SI, within the bounds."""
         number = self._measure(value) if isinstance(value, str) else value
         if isinstance(number, bool) or not isinstance(number, int | float):
-            example = {"m": ' or a length such as "5 mm"', PER_CM2: ' or a density such as "120 /cm2"'}
+            example = {
+                "m": f' or a length such as "5 mm", in {", ".join(UNITS)}',
+                PER_CM2: ' or a density such as "120 /cm2"',
+            }
             raise refuse(f"is {shown(value)}; must be a number" + example.get(self.unit, ""))
         try:
             number = float(number) * (unit if self.unit == "m" and not isinstance(value, str) else 1.0)
@@ -116,14 +118,8 @@ class Quantity:
 
     def _measure(self, text: str) -> float | None:
         """A length such as ``5 mm``, in metres, or a density such as ``120 /cm2``; None for other text."""
-        match = re.fullmatch(r"\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*([a-z]+|/cm2)\s*", text)
         units = {"m": UNITS, PER_CM2: {PER_CM2: 1.0}}.get(self.unit, {})
-        if not match or match[2] not in units:
-            return None
-        try:
-            return float(match[1]) * units[match[2]]
-        except ValueError:
-            return None
+        return measure(text, units)
 
     def clipped(self, values: NDArray, peak: float = 1.0) -> NDArray[np.float64]:
         """Values within the bounds, also times the peak of a ramp; same shape."""

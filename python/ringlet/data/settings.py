@@ -16,6 +16,7 @@ from pydantic_core import PydanticCustomError
 from ringlet.data.errors import UserError
 from ringlet.data.explain import did_you_mean, explain_toml, setting_name, shown
 from ringlet.data.former_names import FormerNames, note, present
+from ringlet.data.lengths import measure
 from ringlet.data.reads import record
 from ringlet.data.regular import read_text
 
@@ -60,7 +61,9 @@ class Section(BaseModel):
                     text = isinstance(leaf, str) and not converts and kinds <= {int, float, type(None)}
                     if text or (isinstance(leaf, bool) and bool not in kinds):
                         whole = "" if float in kinds else "whole "
-                        message = f"is {shown(leaf)}; must be a {whole}number"
+                        length = measure(leaf) if isinstance(leaf, str) else None
+                        metres = f", {length:g} in metres" if length is not None else ""
+                        message = f"is {shown(leaf)}; must be a {whole}number{metres}"
                         raise PydanticCustomError("setting", "{key}{message}", {"key": name, "message": message})
         return data
 

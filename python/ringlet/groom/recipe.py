@@ -7,7 +7,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, PrivateAttr, Tag, ValidationError, WithJsonSchema
 
-from ringlet.data.quantities import UNITS, LengthUnit, Section, explain
+from ringlet.data.lengths import UNITS
+from ringlet.data.quantities import LengthUnit, Section, explain
 from ringlet.groom.color import ColorSettings
 from ringlet.groom.edge import Edge
 from ringlet.groom.edits import Edit

@@ -6,7 +6,8 @@ from typing import Literal
 
 from pydantic import Field
 
-from ringlet.data.quantities import UNITS, LengthUnit, Section
+from ringlet.data.lengths import UNITS
+from ringlet.data.quantities import LengthUnit, Section
 from ringlet.data.stage import StageSpace
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet.data.errors import UserError
-from ringlet.data.quantities import UNITS
+from ringlet.data.lengths import UNITS
 from ringlet.groom import Groom
 from ringlet.groom.operators.grown import DRAWN_TOLERANCE
 from ringlet.groom.scalp import Scalp

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from pydantic import BaseModel
 
-from ringlet.data.quantities import UNITS, Quantity, Varied, along
+from ringlet.data.lengths import UNITS
+from ringlet.data.quantities import Quantity, Varied, along
 from ringlet.data.settings import FORMAT
 from ringlet.groom import Recipe
 from ringlet.groom.load import stage_names
