@@ -54,7 +54,7 @@ def test_a_search_finds_settings_of_all_stages_and_shows_the_one_that_is_chosen(
     assert any(text.startswith("flatness") for text in found.all_inner_texts())
     stages = set(page.locator(".found-stage").all_inner_texts())
     assert stages > {"curl"}  # also what is called flat in other stages, or described so
-    page.get_by_label("Search settings").fill("hairs stray radius")
+    page.get_by_label("Search settings").fill("hairs stray distance")
     page.keyboard.press("Enter")
     assert review.get("ringlet.model.chosen.place[0]") == "hairs"
     assert review.get("document.activeElement.closest('.field').dataset.setting").startswith("hairs.")

@@ -60,7 +60,7 @@ def test_hairs_stay_below_a_cloth_that_their_locks_are_below(tmp_path):
 def test_hairs_at_rest_stay_below_visible_meshes_of_the_head(tmp_path):
     folder = write_example(tmp_path)
     recipe = folder / "small.recipe.toml"
-    recipe.write_text(recipe.read_text() + 'radius = "6 mm"\n')
+    recipe.write_text(recipe.read_text() + 'lock_radius = "6 mm"\n')
     top = 100 * ringlet.build_groom(recipe).locks.points[:, 1].max()  # in centimetres, the unit of the head's file
     at = np.linspace(-20, 20, 9)
     x, z = np.meshgrid(at, at)

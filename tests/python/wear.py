@@ -54,7 +54,7 @@ def write_roofed(folder):
     """Writes wide locks of the small example at rest with a horizontal sheet above them; returns its height [m]."""
     write_wear(folder)
     recipe = folder / "small.recipe.toml"
-    recipe.write_text(recipe.read_text() + 'radius = "6 mm"\n')
+    recipe.write_text(recipe.read_text() + 'lock_radius = "6 mm"\n')
     groom = ringlet.build_groom(recipe)
     ringlet.write_groom(groom, folder / "groom.usdc")
     locks = groom.locks.points
