@@ -11,6 +11,7 @@ import typer.main
 from ringlet.cli.app import app
 from ringlet.data.files import replacing
 from ringlet.data.former_names import RECIPE, SHOT
+from setting_pictures import write_setting_pictures
 
 import ringlet
 from ringlet import validate
@@ -22,9 +23,10 @@ def write_references(folder: Path) -> None:
     """Writes the references to a folder, each only when it has changed."""
     folder.mkdir(exist_ok=True)
     schemas = ringlet.schema()
+    pictures = write_setting_pictures(schemas["recipe"], folder / "settings")
     for name, lines in {
-        "recipe": settings(schemas["recipe"]),
-        "shot": settings(schemas["shot"]),
+        "recipe": settings(schemas["recipe"], pictures),
+        "shot": settings(schemas["shot"], {}),
         "commands": commands(),
         "python": public_names(),
         "cases": cases(),
@@ -36,16 +38,20 @@ def write_references(folder: Path) -> None:
                 aside.write_text(text)
 
 
-def settings(schema: dict[str, Any]) -> Iterator[str]:
-    """A table for the file itself, then one for every kind of table in it."""
-    yield from table(schema, "The file")
+def settings(schema: dict[str, Any], pictures: dict[tuple[str, str], str]) -> Iterator[str]:
+    """A table for the file itself, then one for every kind of table in it.
+
+    pictures: of what settings do, by table and setting
+    """
+    yield from table(schema, "The file", {})
     for name, definition in schema.get("$defs", {}).items():
         if "properties" in definition:
-            yield from table(definition, definition.get("title", name))
+            drawn = {setting: file for (of, setting), file in pictures.items() if of == name}
+            yield from table(definition, definition.get("title", name), drawn)
 
 
-def table(definition: dict[str, Any], title: str) -> Iterator[str]:
-    """Key, type, default and meaning of everything in one table."""
+def table(definition: dict[str, Any], title: str, drawn: dict[str, str]) -> Iterator[str]:
+    """Key, type, default, meaning and picture of everything in one table."""
     yield f"\n## {title}\n"
     if text := definition.get("description"):
         yield inspect.cleandoc(text) + "\n"
@@ -54,7 +60,8 @@ def table(definition: dict[str, Any], title: str) -> Iterator[str]:
     for key, about in definition.get("properties", {}).items():
         unit = about.get("unit", "")
         default = "*required*" if key in required else told(about.get("default"), unit)
-        yield f"| `{key}` | {kind(about, unit)} | {default} | {cell(about.get('description', ''))} |"
+        shown = f" ![{key}, without and with](_generated/settings/{drawn[key]})" if key in drawn else ""
+        yield f"| `{key}` | {kind(about, unit)} | {default} | {cell(about.get('description', ''))}{shown} |"
 
 
 def kind(about: dict[str, Any], unit: str = "") -> str:
