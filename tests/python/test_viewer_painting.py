@@ -146,13 +146,13 @@ def test_a_drawn_line_becomes_the_curve_of_a_parting_in_one_undo_step(folder: Pa
         points = 0.09 * np.stack([0.1 + 0 * angle, np.cos(angle), np.sin(angle)], axis=1)
         one.send(kind="draw", place=["guides", "part_line", "curve"], points=points.tolist(), gesture=3)
         document = one.receive("document", dirty=True)
-        assert document["said"]["guides"]["part_line"] == {"curve": "guides_part_line_curve"}
-        drawn = np.array(document["said"]["curves"]["guides_part_line_curve"]["points"])
+        assert document["said"]["guides"]["part_line"] == {"curve": "guides_part_line"}
+        drawn = np.array(document["said"]["curves"]["guides_part_line"]["points"])
         assert 3 < len(drawn) < 20 and np.allclose(np.linalg.norm(drawn[:, 1:], axis=1), 9.0, atol=0.02)
         assert np.abs(one.receive("locks", draft=False)["points"] - before).max() > 0.001
         one.send(kind="draw", place=["guides", "part_line", "curve"], points=points[::-1].tolist(), gesture=4)
         document = one.receive("document")
-        assert list(document["said"]["curves"]) == ["guides_part_line_curve"]
+        assert list(document["said"]["curves"]) == ["guides_part_line"]
         for _ in range(2):
             one.send(kind="undo")
             document = one.receive("document")

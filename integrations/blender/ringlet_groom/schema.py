@@ -1,7 +1,7 @@
 """The settings of a recipe or a shot, found in Ringlet's JSON schema.
 
-A table of settings is flattened: a setting is its place below the table, ``("part_line", "offset")``. What sliders cannot
-hold, such as zones or lists of dyes, stays to the text.
+A table of settings is flattened: a setting is its place below the table, ``("part_line", "offset")``. What sliders
+cannot hold, such as zones or lists of dyes, stays to the text.
 """
 
 from __future__ import annotations
