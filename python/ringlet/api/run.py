@@ -62,7 +62,6 @@ class Run:
         self.warnings: list[str] = []
         self.cache: Cache | SimulationRecord | None = None
         self.slowest: str | None = None
-        self.verdict: Verdict | None = None
         if self.folder is not None:
             check_place(self.folder / "report.html")
 
@@ -90,16 +89,19 @@ class Run:
         """Notes counts of the result: ``run.count(locks=1200)``."""
         self.counts |= counts
 
-    def simulated(self, cache: Cache | SimulationRecord) -> None:
-        """Notes a simulation: its statistics for the charts, and its report of initial penetration."""
+    def simulated(self, cache: Cache | SimulationRecord) -> Verdict:
+        """Notes a simulation: its statistics for the charts, and its report of initial penetration.
+
+        Returns whether it can be used, and what to look at.
+        """
         from ringlet.report import explain_slowest, judge, start_table, start_warnings
 
         self.cache = cache
         self.slowest = explain_slowest(cache.statistics)
         self.warnings += [*start_warnings(cache.start), *cache.notes]
-        self.verdict = judge(cache.statistics)
         if cache.start:
             self.table("How it started", *start_table(cache.start))
+        return judge(cache.statistics)
 
     def pictured(self, path: Path | str, caption: str) -> None:
         """Notes a picture to show in the report."""

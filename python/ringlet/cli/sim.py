@@ -112,18 +112,16 @@ def sim(
             if contacts is not None:
                 with run.stage("contacts", contacts, "what touches, frame by frame"):
                     ringlet.write_touches(record, output, contacts)
-        run.simulated(record)
+        verdict = run.simulated(record)
         run.count(locks=len(made_groom.locks), points=len(made_groom.locks.points), frames=len(record.frames))
         if record.cloths:
             run.count(cloths=len(record.cloths), cloth_points=sum(record.cloths.values()))
     unsaid = [sentence for sentence in run.warnings if sentence not in said]
-    judged = run.verdict
-    assert judged is not None
-    for sentence in [] if as_json else [*judged.lines(), *unsaid]:
+    for sentence in [] if as_json else [*verdict.lines(), *unsaid]:
         print(sentence)
     start = {name: found for name, found in record.start.items() if name != "marks"}  # these are for pictures
     more = {name: value for name, value in (("start", start), ("notes", record.notes)) if value}
-    wrote(output, run.counts, as_json, verdict=judged.json(), slowest=run.slowest, **more)
+    wrote(output, run.counts, as_json, verdict=verdict.json(), slowest=run.slowest, **more)
 
 
 def _warn(run: ringlet.Run, said: list[str], sentence: str) -> None:
