@@ -294,15 +294,19 @@ def test_a_shot_uses_the_copy_of_its_recipe_when_it_is_asked_to(folder: Path):
         one.receive("numbers", draft=False)
         edit(one, 1.5)
         one.send(kind="save", name="wide")
-        found = problem(one, "save")
+        found = problem(one, "copied")
         assert "the shot still names small.recipe.toml" in found["message"]
         edit(one, 1.6, gesture=2)
+        one.receive("numbers")
+        assert "copied" in {
+            each["subject"] for each in one.latest("problems")["problems"]
+        }  # a new groom leaves the offer
         press(one, found, "Use wide.recipe.toml in the shot")  # the copy lacks this change
         with pytest.raises(AssertionError, match="was changed since its copy was saved"):
             one.receive("welcome")
         one.send(kind="undo")
         one.send(kind="save", name="wider")
-        press(one, problem_with(one, "save", "wider"), "Use wider.recipe.toml in the shot")
+        press(one, problem_with(one, "copied", "wider"), "Use wider.recipe.toml in the shot")
         assert one.receive("welcome", mode="shot")
         document = one.receive("document", name="wider.recipe.toml")
         assert document["said"]["curl"]["width"] == 1.5 and not document["dirty"]

@@ -9,7 +9,7 @@ from pathlib import Path
 from ringlet.data.errors import UserError
 from ringlet.viewer import protocol
 from ringlet.viewer.files import Files
-from ringlet.viewer.problems import GROOM, RECOVERED, RENAMED, SAVE, ProblemList, dismiss
+from ringlet.viewer.problems import COPIED, GROOM, RECOVERED, RENAMED, SAVE, ProblemList, dismiss
 from ringlet.viewer.protocol import File, Fix
 from ringlet.viewer.writing import write, write_copy
 
@@ -36,7 +36,7 @@ class Saving:
             reason = f"{files.recipe.path.name} is not saved: {self._problems[GROOM].message}"
             self._problems.show(SAVE, reason, [anyway, dismiss(SAVE)])
             return None
-        self._problems.clear(SAVE, RECOVERED, RENAMED)
+        self._problems.clear(SAVE, COPIED, RECOVERED, RENAMED)
         if not message.name:
             return write(files, message.file)
         path = write_copy(files, message.file, message.name, as_variant=message.variant)
@@ -50,7 +50,7 @@ class Saving:
             self._copy = path, files.recipe.revision
             message = f"{path.name} is saved; the shot still names {files.recipe.path.name}"
             use = Fix(label=f"Use {path.name} in the shot", message={"kind": "use_copy"})
-            self._problems.show(SAVE, message, [use, dismiss(SAVE)])
+            self._problems.show(COPIED, message, [use, dismiss(COPIED)])
             return
         other = [kind for kind, document in files.documents.items() if kind != file and document.dirty]
         self._go_on(path, discard=not other)
