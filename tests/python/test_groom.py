@@ -104,11 +104,11 @@ def test_the_curl_begins_at_the_root_and_along_the_shape():
     assert first[1] / np.linalg.norm(first) > 0.99
 
 
-def test_loft_raises_locks_and_keeps_their_length():
+def test_volume_raises_locks_and_keeps_their_length():
     hanging = BASE[: BASE.index("[curl]")].replace("length = 6", "length = 6\ngravity_bend = 2")
-    low, high = groom(hanging), groom(hanging + "[[shape]]\nop='loft'\nup=1\namount=1\n")
+    low, high = groom(hanging), groom(hanging + "[[shape]]\nop='volume'\nup=1\namount=1\n")
     assert high.locks.points[:, 1].mean() > low.locks.points[:, 1].mean() + 0.005
-    low, high = (g.locks.lengths() for g in (drawn("[[shape]]\nop='loft'\nup=0"), drawn("")))
+    low, high = (g.locks.lengths() for g in (drawn("[[shape]]\nop='volume'\nup=0"), drawn("")))
     assert np.allclose(low, high, rtol=1e-3)
 
 

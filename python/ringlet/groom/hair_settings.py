@@ -58,8 +58,8 @@ class HairSettings(Section):
         description="radius on the scalp that a lock's roots cover; those of a section's strand cover its share of the "
         "section, and lie flat up to where it grows",
     )
-    gather: Annotated[float, Quantity("", 0.001, 1.0)] = Field(
-        default=0.15, description="part of the lock over which they come together"
+    root_falloff: Annotated[float, Quantity("", 0.001, 1.0)] = Field(
+        default=0.15, description="part of the lock, from its root, over which its hairs come together"
     )
     width: Annotated[Ramped, Quantity("m", 1e-6, 0.01)] = Field(
         default=Ramped(value=0.00009, vary=0.2, ramp=[(0, 1), (0.7, 0.9), (1, 0.3)]), description="diameter of a hair"

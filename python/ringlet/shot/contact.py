@@ -29,12 +29,12 @@ class Contact(Section):
         description="[m/s] times a step: what is sheared less than that sticks. By default 1e-5 where rest.mode is "
         "'equilibrium'",
     )
-    parting_speed: float = Field(
+    separation_speed: float = Field(
         default=2e-3,
         ge=0,
         le=1,
-        description="[m/s] at which locks that begin nearer than they may be part; 0, which is the default where "
-        "rest.mode is 'equilibrium': they stay",
+        description="[m/s] at which locks that begin nearer than they may be separate; faster clears them sooner and "
+        "pushes harder. 0: they stay, which is the default where rest.mode is 'equilibrium'",
     )
 
 

@@ -18,7 +18,7 @@ from ringlet.shot.rest import Rest
 from ringlet.shot.solver import Solver
 from ringlet.shot.variation import Variation
 
-STAYS = {"parting_speed": 0.0, "creep_speed": 1e-5}  # defaults of contact in equilibrium with the groom [m/s]
+STAYS = {"separation_speed": 0.0, "creep_speed": 1e-5}  # defaults of contact in equilibrium with the groom [m/s]
 
 
 FrameNumber = Annotated[int, Field(ge=-limits.FRAME, le=limits.FRAME)]
