@@ -96,9 +96,9 @@ class Groom:
     shapes:     the locks before they were curled (None for a groom that was read from a file)
     unsculpted: the guides before they were sculpted by hand (None for a groom that was read from a file)
     variant:    which variant of the file it was read from (None where that has none)
-    conflicts:  a sentence for every edit of a guide or a lock that is not there, for a head of an odd size, for what is
-                in the files of the recipe but not used, for locks that start into the head, and for those that a
-                displacement makes much longer
+    conflicts:  a sentence for every edit of a guide or a lock that is not there, for a head or hair of an odd size, for
+                what is in the files of the recipe but not used, for locks that start into the head, and for those that
+                a displacement makes much longer
     accessories: what the hair wears, such as bands of ties and beads, which locks carry
     edge:       length of the lines that carry hair, as for lashes [m] (None for hair on an area)
     hidden:     paths of the meshes of the head's file that the hair replaces: not shown, and touched by nothing
