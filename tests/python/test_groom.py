@@ -179,9 +179,9 @@ def broken(change):
         (lambda m: m.points.__setitem__(7, np.nan), "not finite"),
         (
             lambda m: setattr(m, "triangles", np.concatenate([m.triangles, m.triangles[:1, [1, 0, 2]]])),
-            "manifold|opposite",
+            "at most 2|opposite",
         ),
-        (lambda m: m.triangles.__setitem__(3, m.triangles[3, ::-1]), "opposite ways"),
+        (lambda m: m.triangles.__setitem__(3, m.triangles[3, ::-1]), "opposite orientations"),
         (lambda m: setattr(m, "triangles", np.empty((0, 3), np.int32)), "mesh is empty"),
     ],
 )

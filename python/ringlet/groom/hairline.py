@@ -24,10 +24,10 @@ class Hairline(Section):
 
     width: Annotated[float, Quantity("m", 1e-4, 0.5)] = Field(default=0.012, description="width of the band")
     density: Annotated[float, Quantity("", 0.0, 1.0)] = Field(
-        default=0.3, description="part of the locks that grow at the border itself"
+        default=0.3, description="fraction of the locks that grow at the border itself"
     )
     length: Annotated[float, Quantity("", 0.01, 1.0)] = Field(
-        default=0.45, description="length of locks at the border, as a part of what it is elsewhere"
+        default=0.45, description="length of locks at the border, relative to their length elsewhere"
     )
     laid: Annotated[float, Quantity("", 0.0, 1.0)] = Field(
         default=0.5, description="how far locks at the border are laid on the skin: 0 as elsewhere, 1 along it"

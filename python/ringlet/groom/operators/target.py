@@ -46,10 +46,11 @@ class ToTarget(Shape):
         "or the line locks end, 0 when absent",
     )
     spread: Annotated[Varied, Quantity("m", 0.0, 0.1)] = Field(
-        default=Varied(value=0.003), description="how far tips scatter about the target to both sides"
+        default=Varied(value=0.003),
+        description="how far tips scatter to both sides of the target; larger is more ragged",
     )
     least: Annotated[Varied, Quantity("m", 1e-4, 1.0)] = Field(
-        default=Varied(value=0.01), description="length that every lock keeps"
+        default=Varied(value=0.01), description="shortest length that a lock is cut to"
     )
     each: Literal["lock", "section"] = Field(
         default="lock", description="whether tips scatter each by itself, or all of a section together"

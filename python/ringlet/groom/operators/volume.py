@@ -20,10 +20,10 @@ class Volume(Shape):
 
     op: Literal["volume"] = "volume"
     amount: Annotated[Ramped, Quantity("", 0.0, 10.0)] = Field(
-        default=Ramped(value=0.5), description="0 leaves the shape, 1 halves the angle"
+        default=Ramped(value=0.5), description="0 keeps the shape, 1 halves the angle; larger stands up more"
     )
     up: Annotated[float, Quantity("", 0.0, 1.0)] = Field(
-        default=0.5, description="0 lifts off the scalp, 1 against gravity"
+        default=0.5, description="direction of the lift: 0 off the scalp, 1 against gravity"
     )
 
     turns: ClassVar[bool] = True
