@@ -154,13 +154,13 @@ def write_setting_pictures(schemas: dict[str, dict[str, Any]], folder: Path) -> 
     """
     folder.mkdir(exist_ok=True, parents=True)
     made: dict[tuple[str, str], str] = {}
-    known: dict[str, Lines | None] = {}
+    known: dict[tuple[str, View], Lines | None] = {}
 
     def curves(recipe: Recipe, view: View) -> Lines | None:
         text = tomlkit.dumps(recipe)
-        if text not in known:
-            known[text] = drawn(text, view, hairs="hairs" in recipe)
-        return known[text]
+        if (text, view) not in known:
+            known[text, view] = drawn(text, view, hairs="hairs" in recipe)
+        return known[text, view]
 
     def add(
         table: str, name: str, before: Lines | None, after: Lines | None, words: tuple[str, str], view: View
