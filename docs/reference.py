@@ -23,10 +23,10 @@ def write_references(folder: Path) -> None:
     """Writes the references to a folder, each only when it has changed."""
     folder.mkdir(exist_ok=True)
     schemas = ringlet.schema()
-    pictures = write_setting_pictures(schemas["recipe"], folder / "settings")
+    pictures = write_setting_pictures(schemas, folder / "settings")
     for name, lines in {
         "recipe": settings(schemas["recipe"], pictures),
-        "shot": settings(schemas["shot"], {}),
+        "shot": settings(schemas["shot"], pictures),
         "commands": commands(),
         "python": public_names(),
         "cases": cases(),

@@ -129,16 +129,16 @@ def test_a_ramp_is_edited_by_its_points(opened: Any):
 def test_operators_are_added_muted_moved_and_removed(opened: Any):
     review: Review = opened()
     page = review.page
-    for name in ("scraggle", "loft"):
+    for name in ("scraggle", "volume"):
         page.get_by_label("Add an operator").select_option(name)
         review.until(f"ringlet.model.documents.recipe.stages.some(stage => stage.op == '{name}')")
     page.locator('[data-stage="shape/1"]').hover()
     page.get_by_label("Move loft up").click()
-    review.until("ringlet.model.documents.recipe.stages[2].op == 'loft'")
+    review.until("ringlet.model.documents.recipe.stages[2].op == 'volume'")
     page.locator('[data-stage="shape/1"]').hover()
     page.get_by_label("Mute scraggle").click()
     review.until("ringlet.model.documents.recipe.stages[3].muted")
-    assert [operator["op"] for operator in tomllib.loads(review.text())["shape"]] == ["loft", "scraggle"]
+    assert [operator["op"] for operator in tomllib.loads(review.text())["shape"]] == ["volume", "scraggle"]
     page.locator('[data-stage="shape/0"]').hover()
     page.get_by_label("Remove loft").click()
     review.until("ringlet.model.documents.recipe.stages[2].op == 'scraggle'")

@@ -22,7 +22,7 @@ def pair() -> Curves:
 def gap_of_tips(radius: float) -> float:
     """Distance of the tips [m] after two seconds, of strands that touch at ``radius`` [m]."""
     strands = Strands(pair(), Material(), 2)
-    scene = Scene(strands, contact=Contact(radius=5e-4, parting_speed=0.1), radii=np.full(22, radius))
+    scene = Scene(strands, contact=Contact(radius=5e-4, separation_speed=0.1), radii=np.full(22, radius))
     for _ in range(50):
         scene.step(None, 1 / 24)
     return float(np.linalg.norm(strands.positions[21] - strands.positions[10]))

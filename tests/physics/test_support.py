@@ -109,7 +109,8 @@ def test_a_contact_query_returns_the_contacts_of_the_last_step():
 def test_a_contact_query_before_a_step_agrees_with_a_tiny_step():
     shot, groom = scene(*crossed(), more=SOFT)
     away = 1e-9  # [m] separation by a step
-    touching = Scene(make_strands(shot, groom), contact=shot.touching.model_copy(update={"parting_speed": away / 1e-6}))
+    contact = shot.touching.model_copy(update={"separation_speed": away / 1e-6})
+    touching = Scene(make_strands(shot, groom), contact=contact)
     found, where = touching.touching()
     touching.step(groom.locks.points, 1e-6, solver=Solver(newton=1))
     vertices, values = touching.contacts

@@ -137,7 +137,7 @@ def test_the_add_on_plays_a_cache_on_a_groom(groom, blender, tmp_path):
 def test_the_add_on_refuses_other_files_and_leaves_the_scene_unchanged(groom, blender, tmp_path):
     scene = blender("refused", tmp_path / "nowhere.usdc", tmp_path / "head.usdc")
     assert "there is no such file" in scene["no file"]
-    assert "head.usdc: is no groom of Ringlet's" in scene["no groom"]
+    assert "head.usdc: is not a Ringlet groom" in scene["no groom"]
     assert "There is no groom in the scene" in scene["no groom to play"]
     assert scene["objects"] == 0
 

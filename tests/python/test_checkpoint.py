@@ -157,7 +157,7 @@ def test_a_concurrent_run_on_the_same_files_is_refused(folder):
         untouched = groom.stat()
         other.send_signal(signal.SIGCONT)
         assert other.wait(120) == 0
-    assert all(one.exit_code == 2 and "is of a run that goes on" in one.stderr for one in refused)
+    assert all(one.exit_code == 2 and "belongs to a run in progress" in one.stderr for one in refused)
     assert (untouched.st_ino, untouched.st_mtime_ns) == (written.st_ino, written.st_mtime_ns)
     assert (read_cache(folder / "cache.usdc").points == expected).all()
 
@@ -192,7 +192,7 @@ def test_a_program_keeps_its_lock_on_a_folder_after_a_simulation(folder):
         ringlet.simulate(folder / "small.shot.toml", checkpoints=part)
         with started(folder) as other:
             assert other.wait(120) == 2
-        with pytest.raises(ringlet.UserError, match="is of a run that goes on"), ringlet.hold_checkpoints(part):
+        with pytest.raises(ringlet.UserError, match="belongs to a run in progress"), ringlet.hold_checkpoints(part):
             pass
     with started(folder) as other:
         assert other.wait(120) == 0

@@ -196,7 +196,7 @@ def test_wrong_requests_are_refused_in_one_line_and_leave_nothing(hair, tmp_path
     for words, says in (
         ((hair, tmp_path / "a.fbx"), "must end in"),
         ((hair, tmp_path / "a.usdz"), "packages are not written"),
-        ((hair, hair), "is a file that is read here"),
+        ((hair, hair), "is an input of this command"),
         ((tmp_path / "none.usdc", tmp_path / "a.obj"), "there is no such file"),
         ((hair, tmp_path / "a.usdc", "--from-unit", "mm"), "stores its unit"),
         ((hair, tmp_path / "a.usdc", "--frames", "7:9"), "no frame from 7 to 9; it holds 1 to 3"),

@@ -41,7 +41,7 @@ length = 5
 {cornrow}
 [hairs]
 per_lock = 200
-gather = 0.06
+root_falloff = 0.06
 frizz = 0
 stray = 0
 shorter = 0

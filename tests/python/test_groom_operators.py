@@ -18,7 +18,7 @@ OPERATORS = {
     "smooth": "wavelength = 6",
     "length": "factor = 0.7",
     "lift": "angle = 25",
-    "loft": "amount = 2",
+    "volume": "amount = 2",
     "bend": "angle = 60",
     "scraggle": "magnitude = 1",
     "noise": "magnitude = 1",
@@ -29,11 +29,11 @@ OPERATORS = {
     "flyaways": "share = 0.5",
     "straighten": "",
     "attract": "curve = 'tail'",
-    "cut": "at = -6\nsoft = 0.5",
+    "cut": "at = -6\nspread = 0.5",
     "edges": "within = 15",
-    "grow_to": "mesh = 'round'\nsoft = 0.5",
+    "grow_to": "mesh = 'round'\nspread = 0.5",
 }
-KEEPING_LENGTH = ["lift", "loft", "bend", "part", "flyaways", "straighten"]
+KEEPING_LENGTH = ["lift", "volume", "bend", "part", "flyaways", "straighten"]
 TAIL = "[curves.tail]\npoints = [[0, 8, -8], [0, 6, -11], [0, -4, -12]]\n"
 ROUND = "[meshes.round]\nmiddle = [0, 0, 0]\n"
 GROWN = """
@@ -415,8 +415,8 @@ def test_a_recipe_of_all_operators_makes_a_groom():
     assert len(groom.locks) == 40 and np.isfinite(groom.locks.points).all()
 
 
-def test_cut_locks_end_on_the_plane_within_softness_and_keep_their_way_to_it():
-    plain, cut = locks(), locks("[[shape]]\nop = 'cut'\ntoward = [0, 0, 1]\nat = 5\nsoft = 0.2\nleast = 1")
+def test_cut_locks_end_on_the_plane_within_their_spread_and_keep_their_way_to_it():
+    plain, cut = locks(), locks("[[shape]]\nop = 'cut'\ntoward = [0, 0, 1]\nat = 5\nspread = 0.2\nleast = 1")
     middle = Scalp(ball(), "scalp").middle
     roots, tips, before = (lock[:, :, 2] - middle[2] for lock in (grid(cut)[:, :1], grid(cut)[:, -1:], grid(plain)))
     beyond, crosses = roots[:, 0] > 0.052, before.max(axis=1) > 0.052

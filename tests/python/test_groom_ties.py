@@ -144,7 +144,7 @@ def test_a_bun_is_wound_without_overlap_and_its_ends_are_in_it():
 @pytest.mark.parametrize(
     ("settings", "message"),
     [
-        ("", "says nowhere where the tie is; give it a curve, toward, or each = 'section'"),
+        ("", "has no place for the tie; give it a curve, toward, or each = 'section'"),
         ("curve = 'tail'\ntoward = [0, 1, 0]", "has a curve and also toward or each = 'section'; give one of them"),
         ("each = 'section'", "tie.each is 'section', but there are none; add [locks.sections]"),
         ("curve = 'tial'", "tie.curve is 'tial', which is no helper curve; did you mean 'tail'"),

@@ -31,7 +31,7 @@ points = 64
 op = "scraggle"
 magnitude = 0.3
 [[shape]]
-op = "loft"
+op = "volume"
 amount = 0.5
 [[shape]]
 op = "scraggle"
@@ -68,7 +68,7 @@ def test_a_variant_changes_only_its_own_values(folder):
 
 
 def test_operators_are_changed_by_name_and_removed_with_false(folder):
-    text = 'extends = "base.toml"\ncurl = false\n[shape]\nloft = false\n"scraggle 2" = { magnitude = 0.7 }\n'
+    text = 'extends = "base.toml"\ncurl = false\n[shape]\nvolume = false\n"scraggle 2" = { magnitude = 0.7 }\n'
     down = read_recipe(variant(folder, text))
     assert [op.op for op in down.shape] == ["scraggle", "scraggle"]
     assert [op.magnitude.value for op in down.shape] == pytest.approx([0.003, 0.007])
@@ -77,9 +77,9 @@ def test_operators_are_changed_by_name_and_removed_with_false(folder):
 
 
 def test_operators_are_changed_and_appended_in_one_variant(folder):
-    text = 'extends = "base.toml"\n[shape.loft]\namount = 0.9\n[[shape.append]]\nop = "clump"\nsize = 3\n'
+    text = 'extends = "base.toml"\n[shape.volume]\namount = 0.9\n[[shape.append]]\nop = "clump"\nsize = 3\n'
     both = read_recipe(variant(folder, text))
-    assert [op.op for op in both.shape] == ["scraggle", "loft", "scraggle", "clump"]
+    assert [op.op for op in both.shape] == ["scraggle", "volume", "scraggle", "clump"]
     assert (both.shape[1].amount.value, both.shape[3].size) == (0.9, 0.03)
     again = read_recipe(variant(folder, 'extends = "down.toml"\n[[shape.append]]\nop = "clump"\n', "again.toml"))
     assert [op.op for op in again.shape] == [*(op.op for op in both.shape), "clump"]
@@ -121,11 +121,11 @@ def test_the_text_stored_with_the_groom_is_a_complete_recipe(folder):
         ("extends = 3", "extends is 3; must be the name of a file"),
         ('extends = "base.toml"\nunit = "m"', "unit is 'm', that of base.toml is 'cm'; must be the same"),
         (
-            'extends = "base.toml"\n[shape.lofft]\namount = 1',
-            "shape.lofft is no operator of what it extends; did you mean",
+            'extends = "base.toml"\n[shape.volumme]\namount = 1',
+            "shape.volumme is no operator of what it extends; did you mean",
         ),
         ('extends = "base.toml"\n[shape]\nappend = 3', "shape.append is 3; must be tables [[shape.append]]"),
-        ('extends = "base.toml"\n[shape]\nloft = 3', "shape.loft is 3; must be a table of settings, or false"),
+        ('extends = "base.toml"\n[shape]\nvolume = 3', "shape.volume is 3; must be a table of settings, or false"),
         ('extends = "base.toml"\n[curl]\nwidht = 3', "curl.widht is not a setting; did you mean 'width'?"),
     ],
 )

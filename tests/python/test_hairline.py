@@ -17,7 +17,7 @@ def hairline(settings, locks="count = 3000\npoints = 8"):
 
 def test_a_hairline_thins_and_shortens_locks_towards_the_border_and_nothing_else():
     hard = hairline("")
-    soft = hairline("[locks.hairline]\nwidth = 2\ndensity = 0.2\nlength = 0.5\nflat = 0")
+    soft = hairline("[locks.hairline]\nwidth = 2\ndensity = 0.2\nlength = 0.5\nlaid = 0")
     same = hard.take(np.isin(hard.ids, soft.ids))
     assert np.array_equal(same.ids, soft.ids)  # locks that grow are those that grew before
     height = soft.roots[:, 1]  # above the border, which is the equator
@@ -33,7 +33,7 @@ def test_a_hairline_thins_and_shortens_locks_towards_the_border_and_nothing_else
 def test_a_flat_hairline_lies_along_the_skin():
     leans = []
     for flat in (0, 1):
-        locks = hairline(f"[locks.hairline]\nwidth = 2\ndensity = 1\nlength = 1\nflat = {flat}")
+        locks = hairline(f"[locks.hairline]\nwidth = 2\ndensity = 1\nlength = 1\nlaid = {flat}")
         points = locks.points.reshape(len(locks), -1, 3)
         near = points[:, 0, 1] < 0.002
         edge = points[near, 1] - points[near, 0]

@@ -152,7 +152,7 @@ def swinging(*, size: float = 1.0, mirrored: bool = False, converged: bool = Fal
     )
     body = ball(0.02, [0.012, -0.06, 1e-3])
     body = Body(body.points * mirror * size, body.triangles, body.thickness * size)
-    contact = Contact(radius=4e-4 * size, creep_speed=1e-3 * size, parting_speed=2e-3 * size)
+    contact = Contact(radius=4e-4 * size, creep_speed=1e-3 * size, separation_speed=2e-3 * size)
     scene = Scene(Strands(curves, material, 3), [body], contact)
     solver = Solver(until_converged=converged, tolerance=1e-8 * size, integrator=integrator)
     frames = []

@@ -30,7 +30,7 @@ ROOT = 2  # points of hairs at their roots
 def hairs_of_locs(shape, **hairs):
     """Offsets of hairs across their loc beyond its root, shape (hairs, points, 3) [m], and the groom."""
     made = groom("strands = 1", shape, "points = 40")
-    made.hairs = {**FULL, "gather": 0.02, **hairs}
+    made.hairs = {**FULL, "root_falloff": 0.02, **hairs}
     curves = make_hairs(made).curves
     points = curves.points.reshape(len(curves), -1, 3)
     lock = curves.curve["lock"]
@@ -74,7 +74,7 @@ def test_hair_of_a_section_comes_to_its_loc_above_the_skin():
 
     def heights(start):
         made = groom("strands = 1", leaning + LOC.replace("start = 0", f"start = {start}"), "points = 120")
-        made.hairs = FULL | {"gather": 0.05}
+        made.hairs = FULL | {"root_falloff": 0.05}
         points = make_hairs(made).curves.points.reshape(-1, 120, 3)[:, :10]
         return Scalp(ball(), "scalp").solid.above(np.ascontiguousarray(points.reshape(-1, 3), np.float64))[0]
 

@@ -71,7 +71,7 @@ def test_a_mask_by_sections_is_refused_where_there_are_none():
 
 
 def hairs_of(made, **settings):
-    made.hairs = {"frizz": 0.0, "stray": 0.0, "shorter": 0.0, "gather": 0.1, **settings}
+    made.hairs = {"frizz": 0.0, "stray": 0.0, "shorter": 0.0, "root_falloff": 0.1, **settings}
     return make_hairs(made).curves
 
 

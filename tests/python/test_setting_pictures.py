@@ -1,4 +1,4 @@
-"""Pictures of what settings do, in the reference of recipes."""
+"""Pictures of what settings do, in the references of recipes and shots."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def pictures(tmp_path_factory):
     import setting_pictures
 
     folder = tmp_path_factory.mktemp("settings")
-    yield folder, setting_pictures.write_setting_pictures(ringlet.schema()["recipe"], folder)
+    yield folder, setting_pictures.write_setting_pictures(ringlet.schema(), folder)
     patch.undo()
 
 
@@ -38,7 +38,9 @@ def sides(path: Path) -> list[list[np.ndarray]]:
 def test_settings_that_shape_hair_have_pictures(pictures):
     _, made = pictures
     wanted = {("Curl", "width"), ("Curl", "skips"), ("HairSettings", "root_radius"), ("Scraggle", "magnitude")}
-    assert wanted <= set(made) and ("Curl", "preset") not in made and len(made) > 40
+    assert wanted <= set(made) and ("Curl", "preset") not in made and len(made) > 90
+    styles = {"Braid", "Twist", "Cornrow", "Loc", "Knot", "Tie", "Edges", "Hairline", "Sections"}
+    assert styles <= {table for table, _ in made}
 
 
 def test_both_sides_of_every_picture_differ(pictures):
@@ -57,3 +59,11 @@ def test_the_right_side_shows_the_larger_value(pictures):
         np.mean([np.ptp(curve, axis=0).max() for curve in side]) for side in sides(folder / made["Length", "factor"])
     ]
     assert reach[1] > 1.5 * reach[0]
+
+
+def test_stiffer_curls_hang_less_and_those_in_thicker_air_lag_behind_their_roots(pictures):
+    folder, made = pictures
+    hang = [np.mean([np.ptp(curve[:, 1]) for curve in side]) for side in sides(folder / made["Material", "bend_scale"])]
+    assert hang[1] < hang[0] - 2.0
+    lag = [np.mean([curve[0, 0] - curve[-1, 0] for curve in side]) for side in sides(folder / made["Material", "drag"])]
+    assert lag[1] > lag[0] + 2.0

@@ -187,7 +187,7 @@ def test_a_lock_of_several_grooms_is_edited_by_its_id(project, recipe):
     assert [edit["lock"] for edit in ringlet.list_edits(recipe)] == [lock]
     np.testing.assert_allclose(ringlet.build_groom(recipe).locks.points, made.locks.points, atol=1e-4)
     assert run("edit", recipe, "--release", lock).exit_code == 0 and not ringlet.list_edits(recipe)
-    refused(run("edit", recipe, "--freeze", 10**15 + 5 * 10**12), "is of no groom; there are: hair, brows")
+    refused(run("edit", recipe, "--freeze", 10**15 + 5 * 10**12), "belongs to no groom; there are: hair, brows")
 
 
 def test_a_modelled_brow_that_hair_replaces_is_neither_shown_nor_touched(project, recipe):

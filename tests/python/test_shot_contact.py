@@ -106,9 +106,9 @@ def test_initial_penetration_is_reported_and_recovers():
     assert not penetration_depths(cache.points[-1], sphere.triangles, sphere.points).any()
 
 
-@pytest.mark.parametrize("parting_speed", [2e-3, 0.0])
-def test_initial_overlaps_of_locks_are_reported(parting_speed):
-    touching = CONTACT + f"parting_speed = {parting_speed}\n"
+@pytest.mark.parametrize("separation_speed", [2e-3, 0.0])
+def test_initial_overlaps_of_locks_are_reported(separation_speed):
+    touching = CONTACT + f"separation_speed = {separation_speed}\n"
     cache = simulated(SHOT + "[forces]\ngravity = [0, 0, 0]\n" + touching, made=groom(apart=5e-4))
     found = cache.start["overlapping"]
     assert found["locks"] == 3 and found["places"] >= 2 * (POINTS - 4)

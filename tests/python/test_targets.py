@@ -26,7 +26,7 @@ def tips(made):
 
 def test_tips_of_a_bob_lie_on_a_drawn_line_within_its_softness():
     plain = groom("op = 'bend'\nangle = 0", BOB)
-    made = groom(f"op = 'grow_to'\nline = 'bob'\nsoft = '2 mm'\n{SIDES}", BOB)
+    made = groom(f"op = 'grow_to'\nline = 'bob'\nspread = '2 mm'\n{SIDES}", BOB)
     changed = np.abs(tips(made) - tips(plain)).max(axis=1) > 1e-9
     ends = tips(made)[changed]
     off = ends[:, 1] - (-0.07 - 0.15 * ends[:, 0])
@@ -37,7 +37,7 @@ def test_tips_of_a_bob_lie_on_a_drawn_line_within_its_softness():
 
 def test_the_envelope_of_an_afro_follows_a_mesh():
     guides = "length = { value = 6, vary = 0.5 }\nlift = 1\ngravity_bend = 0"
-    shape = "op = 'grow_to'\nmesh = 'round'\nsoft = '1 mm'"
+    shape = "op = 'grow_to'\nmesh = 'round'\nspread = '1 mm'"
     solid = ellipsoid()
 
     def off(made):
@@ -59,7 +59,7 @@ def ellipsoid():
 
 def test_a_cut_takes_a_mesh_or_a_line_too_and_never_lengthens():
     plain = groom("op = 'bend'\nangle = 0", guides="length = 14\nlift = 1\ngravity_bend = 0")
-    cut = groom("op = 'cut'\nmesh = 'round'\nsoft = 0\nat = -2", ROUND, "length = 14\nlift = 1\ngravity_bend = 0")
+    cut = groom("op = 'cut'\nmesh = 'round'\nspread = 0\nat = -2", ROUND, "length = 14\nlift = 1\ngravity_bend = 0")
     above = np.asarray(ellipsoid().above(np.ascontiguousarray(tips(cut)))[0])
     shorter = cut.locks.lengths() < plain.locks.lengths() - 1e-6
     assert shorter.sum() > 50 and (cut.locks.lengths() <= plain.locks.lengths() + 1e-9).all()
@@ -77,7 +77,7 @@ def test_tips_of_a_section_scatter_together():
     middle = Scalp(ball(), "scalp").middle
 
     def offsets(each):
-        made = groom(f"op = 'grow_to'\nsoft = 1\neach = '{each}'\nat = 8\n{SIDES}", locks=sections)
+        made = groom(f"op = 'grow_to'\nspread = 1\neach = '{each}'\nat = 8\n{SIDES}", locks=sections)
         depth = middle[1] - tips(made)[:, 1]
         section = made.locks.curve[SECTION][np.abs(depth - 0.08) < 0.0101]
         depth = depth[np.abs(depth - 0.08) < 0.0101]
@@ -92,7 +92,7 @@ def test_a_mesh_is_read_from_a_file_and_read_again_when_it_changes(tmp_path):
     recipe = write_example(tmp_path) / "small.recipe.toml"
     memory = Memory()
     text = recipe.read_text().replace("points = 40", "points = 200")
-    text = text.replace("[curl]", "[[shape]]\nop = 'grow_to'\nmesh = 'box'\nsoft = 0\n[curl]", 1)
+    text = text.replace("[curl]", "[[shape]]\nop = 'grow_to'\nmesh = 'box'\nspread = 0\n[curl]", 1)
     recipe.write_text(text + "[meshes.box]\nfile = 'box.obj'\nunit = 'cm'\n")
     corners = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
     faces = ["1 2 4 3", "5 7 8 6", "1 5 6 2", "3 4 8 7", "1 3 7 5", "2 6 8 4"]

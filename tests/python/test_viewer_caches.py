@@ -97,7 +97,7 @@ def test_replacing_a_cache_by_one_of_another_groom_is_reported(folder: Path, old
         recipe.write_text(recipe.read_text().replace(old, new))
         write_marked_cache(small_groom(folder, "other.usda"), cache, 2, 5, under="other.usda")
         one.send(kind="watch", shot=[2])
-        assert "is of another groom" in one.receive("trouble")["message"]
+        assert "belongs to another groom" in one.receive("trouble")["message"]
         assert not len(one.receive("timeline")["frames"])
 
 

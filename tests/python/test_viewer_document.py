@@ -104,8 +104,8 @@ def test_an_operator_is_added_before_the_curl_and_removed_again(document: Docume
     for _ in range(2):
         document.remove_tables("shape", [0])
     assert "shape" not in document.contents() and "# The look." in document.text
-    document.add_tables("shape", 0, [{"op": "loft"}])
-    assert document.contents()["shape"] == [{"op": "loft"}]
+    document.add_tables("shape", 0, [{"op": "volume"}])
+    assert document.contents()["shape"] == [{"op": "volume"}]
     assert document.text.index("[[shape]]") < document.text.index("[curl]")
 
 

@@ -19,9 +19,9 @@ STYLES: dict[str, tuple[str, list[Any]]] = {
     "knot": (STRANDS, ["windings", 2]),
     "tie": (LOOSE, ["band", {"value": 0.4}]),
     "cut": (LOOSE, ["at", 6]),
-    "grow_to": (LOOSE, ["soft", 1]),
+    "grow_to": (LOOSE, ["spread", 1]),
     "edges": (LOOSE, ["within", 5]),
-    "hairline": (LOOSE, ["flat", 1]),
+    "hairline": (LOOSE, ["laid", 1]),
 }
 
 

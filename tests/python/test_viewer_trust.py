@@ -143,7 +143,7 @@ def test_a_conflict_is_merged_by_setting(conflict: tuple[Page, Path]):
 
 def test_a_merge_takes_whole_lists_of_operators_with_their_comments():
     base = 'ringlet = 2\n\n[[shape]]\nop = "clump"\n\n[curl]\nwidth = 1\n'
-    mine = base.replace("[curl]", '# flat\n[[shape]]\nop = "loft" # a little\n\n[curl]')
+    mine = base.replace("[curl]", '# flat\n[[shape]]\nop = "volume" # a little\n\n[curl]')
     theirs = base.replace("width = 1", "width = 2 # wide")
     versions = Versions(base, mine, theirs)
     (place, difference), _ = versions.differences()
@@ -211,7 +211,7 @@ def test_a_draft_is_completed_when_its_page_leaves(folder: Path, monkeypatch):
 
 def test_acting_alone_keeps_the_mutes(folder: Path):
     recipe = folder / "small.recipe.toml"
-    recipe.write_text(recipe.read_text() + '[[shape]]\nop = "scraggle"\n[[shape]]\nop = "loft"\n')
+    recipe.write_text(recipe.read_text() + '[[shape]]\nop = "scraggle"\n[[shape]]\nop = "volume"\n')
     with serving(folder) as client, page(client) as one:
         one.send(kind="mute", stages=["shape/0"])
         one.send(kind="mute", stages=["shape/0"], solo="shape/1")
@@ -253,7 +253,7 @@ def test_frames_tell_their_run_and_come_back_with_their_groom(folder: Path):
 
 def test_operators_are_added_to_a_recipe_that_extends_another(folder: Path):
     base = folder / "small.recipe.toml"
-    base.write_text(base.read_text() + '[curves.wave]\npoints = [[0, 9, 0], [0, 14, 0]]\n[[shape]]\nop = "loft"\n')
+    base.write_text(base.read_text() + '[curves.wave]\npoints = [[0, 9, 0], [0, 14, 0]]\n[[shape]]\nop = "volume"\n')
     (folder / "more.recipe.toml").write_text('ringlet = 2\nextends = "small.recipe.toml"\n')
     with serving(folder, "more.recipe.toml") as client, page(client) as one:
         one.send(kind="arrange", action="add", at=1, op="attract", values={"curve": "wave"})
@@ -263,14 +263,14 @@ def test_operators_are_added_to_a_recipe_that_extends_another(folder: Path):
         one.receive("document")
         ops = [[stage["op"] for stage in one.receive("document")["stages"]][2:-5] for _ in range(4)]
         assert ops == [
-            ["loft", "attract"],
-            ["loft", "attract", "scraggle"],
-            ["loft", "scraggle", "attract"],
-            ["loft", "scraggle"],
+            ["volume", "attract"],
+            ["volume", "attract", "scraggle"],
+            ["volume", "scraggle", "attract"],
+            ["volume", "scraggle"],
         ]
         one.send(kind="save")
         one.receive("saved")
-    assert [operator.op for operator in read_recipe(folder / "more.recipe.toml").shape] == ["loft", "scraggle"]
+    assert [operator.op for operator in read_recipe(folder / "more.recipe.toml").shape] == ["volume", "scraggle"]
 
 
 def test_saving_as_goes_on_with_the_new_file(folder: Path):

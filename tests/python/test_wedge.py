@@ -193,7 +193,7 @@ def test_a_task_of_a_concurrent_run_is_refused_and_its_folder_unchanged(shot, tm
         for values, done in (("1", []), ("1,2", ["done"])):
             options = ["--set", f"strands.bend={values}", *(["--here"] if here else ["--workers", "1"])]
             other = subprocess.run([*command, *options], capture_output=True, text=True)
-            assert other.returncode == 1 and "is of a run that goes on" in " ".join(other.stdout.split())
+            assert other.returncode == 1 and "belongs to a run in progress" in " ".join(other.stdout.split())
             assert [path.name for path in own.rglob("*")] == ["cache.usdc.part", "held"]
             assert [result.state for result in read_results(tmp_path / "out").values()] == done
     assert run("wedge", shot, "--set", "strands.bend=1,2", "--here", "-o", tmp_path / "out").exit_code == 0

@@ -88,7 +88,7 @@ mode = {mode}
 gravity = [0, {gravity}, 0]
 [contact]
 radius = 4e-4
-parting_speed = 0
+separation_speed = 0
 """
 SKIN = Collider(thickness=2e-3)  # distance of grooms from the skin
 

@@ -48,7 +48,7 @@ def import_groom(context: bpy.types.Context, path: str, *, show_locks: bool = Fa
     if not {"locks", "guides"} <= curves.keys():
         for thing in new:
             bpy.data.objects.remove(thing)
-        raise Refused(f"{Path(path).name}: is no groom of Ringlet's; open it with Universal Scene Description instead")
+        raise Refused(f"{Path(path).name}: is not a Ringlet groom; open it with Universal Scene Description instead")
     if not any(thing[PATH].startswith(HAIRS) for thing in curves.values()):
         procedural = [thing for thing in new if thing[PATH].startswith(HAIRS)]  # Blender shows it as an empty
         if procedural:

@@ -101,7 +101,7 @@ def source_space_of(source: Path | str, unit: float | None, up: Literal["Y", "Z"
         return None
     default = io.format_of(source).space
     if default is None:
-        raise UserError(f"{source}: stores its unit and its axis; leave those for it out")
+        raise UserError(f"{source}: stores its unit and up-axis; leave --from-unit and --from-up out")
     return StageSpace(unit or default.meters_per_unit, up or default.up_axis)
 
 

@@ -152,7 +152,8 @@ def _hidden(recipe: Recipe) -> list[str]:
     if not names or file is None:
         return []
     if file.suffix == ".obj":
-        raise UserError(f"{recipe.path or 'recipe'}: scalp.hide names prims of a USD file; {file.name} has none")
+        where = recipe.path or "recipe"
+        raise UserError(f"{where}: scalp.hide names prims of a USD file, which {file.name} is not; remove it")
     return io.surface_paths(file, names, "scalp.hide")
 
 

@@ -137,7 +137,7 @@ def write_hairs(
         cache = groom
     if cache is None and frames is not None:
         asked = f"{frames[0]}:{frames[1]}"
-        raise UserError(f"{groom}: frames {asked} are asked of a groom that does not move; name its cache as well")
+        raise UserError(f"{groom}: does not move, so it has no frames {asked}; give its cache too, with --cache")
     if variant is None and cache is not None:
         variant = read_groom(cache).variant
     locks = read_groom(groom, variant=variant)

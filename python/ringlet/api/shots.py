@@ -313,7 +313,7 @@ def _rest_shape(shot: Shot, groom: Groom, obstacles: Sequence[Obstacle], allow_s
             f"shot: rest.mode is '{shot.rest.mode}', but rest.file is missing; name what ringlet loft wrote"
         )
     if not shot.rest_file.exists():
-        raise UserError(f"{shot.rest_file}: there is no lofted shape; make it with: ringlet loft {shot.path}")
+        raise UserError(f"{shot.rest_file}: there is no such rest shape; make it with: ringlet loft {shot.path}")
     kept, made_from = io.read_rest(shot.rest_file)
     return rest.check_current(
         kept, made_from, shot, groom, shot.rest_file, obstacles=obstacles, allow_stale=allow_stale

@@ -17,13 +17,15 @@ DEEPEST = 24  # tables and rows around a setting, at most
 class Rename(NamedTuple):
     """A setting with a new name.
 
-    place: its former name, in tables by their present names. ``shape.OP`` is an operator, and its table in longer
-           places; ``*.`` stands for any tables
-    name:  its present name
+    place:  its former name, in tables by their present names. ``shape.OP`` is an operator, and its table in longer
+            places; ``*.`` stands for any tables
+    name:   its present name
+    joined: whether it became one with another that has the present name all along
     """
 
     place: str
     name: str
+    joined: bool = False
 
     @property
     def former(self) -> str:
@@ -41,7 +43,9 @@ RECIPE = (
     Rename("guides.zone.spread", "angle"),
     Rename("guides.part", "part_line"),
     Rename("locks.sections.partings", "part_lines"),
-    Rename("shape.gather", "tie"),
+    Rename("locks.hairline.flat", "laid"),
+    Rename("shape.gather", "tie", joined=True),
+    Rename("shape.loft", "volume"),
     Rename("shape.tie.tie", "curve"),
     Rename("shape.clump.amount", "tightness"),
     Rename("shape.edges.gather", "tightness"),
@@ -56,6 +60,8 @@ RECIPE = (
     Rename("shape.cornrow.droop", "gravity_bend"),
     Rename("shape.part.parting", "part_line"),
     Rename("shape.attract.reach", "falloff"),
+    Rename("shape.cut.soft", "spread"),
+    Rename("shape.grow_to.soft", "spread"),
     Rename("guides.part_line.line", "curve"),
     Rename("guides.part_line.reach", "falloff"),
     Rename("shape.part.part_line.line", "curve"),
@@ -66,6 +72,7 @@ RECIPE = (
     Rename("hairs.taper", "lock_taper"),
     Rename("hairs.flatness", "lock_flatness"),
     Rename("hairs.spread", "root_radius"),
+    Rename("hairs.gather", "root_falloff"),
     Rename("hairs.stray_radius", "stray_distance"),
     Rename("hairs.families.amount", "tightness"),
     Rename("hairs.families.size", "radius"),
@@ -76,7 +83,10 @@ RECIPE = (
     Rename("*.noise_size", "noise_wavelength"),
     Rename("*.mask.soft", "falloff"),
 )
-SHOT = (Rename("*.noise_size", "noise_wavelength"),)
+SHOT = (
+    Rename("contact.parting_speed", "separation_speed"),
+    Rename("*.noise_size", "noise_wavelength"),
+)
 RENAMES = tuple(dict.fromkeys(RECIPE + SHOT))
 ATTRIBUTES = {"nail": "pin", "led_by_nail": "led_by_pin"}  # of curves in stored grooms and rest shapes
 
@@ -217,6 +227,6 @@ def _first() -> dict[tuple[str, ...], str]:
     found = {}
     for rename in RENAMES:
         *tables, former = rename.place.split(".")
-        if tables != ["shape"]:  # operators are renamed where two become one
+        if not rename.joined:
             found[(*tables[tables[:1] == ["shape"] :], rename.name)] = former
     return found

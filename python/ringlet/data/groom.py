@@ -47,7 +47,7 @@ class HairOffsets:
     width:            diameters at even steps [m], shape (hairs, k), float32
     root_triangle:    triangle of the root, shape (hairs,), int32
     root_barycentric: weights of the root, shape (hairs, 3), float64
-    gather:           part of a hair over which it comes from its root to its offset
+    root_falloff:     part of a hair over which it comes from its root to its offset
     """
 
     lock: NDArray[np.int64]
@@ -56,12 +56,12 @@ class HairOffsets:
     width: NDArray[np.float32]
     root_triangle: NDArray[np.int32]
     root_barycentric: NDArray[np.float64]
-    gather: float
+    root_falloff: float
 
     def take(self, rows: NDArray) -> HairOffsets:
         """The chosen hairs."""
         arrays = {name: values[rows] for name, values in vars(self).items() if isinstance(values, np.ndarray)}
-        return HairOffsets(**arrays, gather=self.gather)
+        return HairOffsets(**arrays, root_falloff=self.root_falloff)
 
     def check(self, what: str) -> HairOffsets:
         """Raises UserError for arrays that do not fit one another or are not finite. Returns self."""
@@ -70,7 +70,7 @@ class HairOffsets:
         shaped = self.across.ndim == 3 and self.across.shape[1] >= 2 and self.across.shape[2] == 2
         if not count or any(len(values) != count for values in arrays.values()) or not shaped:
             raise UserError(f"{what}: its arrays of hairs do not fit one another; adopt the hair again")
-        if not all(np.isfinite(values).all() for values in arrays.values()) or not 0.0 < self.gather <= 1.0:
+        if not all(np.isfinite(values).all() for values in arrays.values()) or not 0.0 < self.root_falloff <= 1.0:
             raise UserError(f"{what}: holds values that are not finite or out of range; adopt the hair again")
         return self
 
@@ -96,9 +96,9 @@ class Groom:
     shapes:     the locks before they were curled (None for a groom that was read from a file)
     unsculpted: the guides before they were sculpted by hand (None for a groom that was read from a file)
     variant:    which variant of the file it was read from (None where that has none)
-    conflicts:  a sentence for every edit of a guide or a lock that is not there, for a head of an odd size, for what is
-                in the files of the recipe but not used, for locks that start into the head, and for those that a
-                displacement makes much longer
+    conflicts:  a sentence for every edit of a guide or a lock that is not there, for a head or hair of an odd size, for
+                what is in the files of the recipe but not used, for locks that start into the head, and for those that
+                a displacement makes much longer
     accessories: what the hair wears, such as bands of ties and beads, which locks carry
     edge:       length of the lines that carry hair, as for lashes [m] (None for hair on an area)
     hidden:     paths of the meshes of the head's file that the hair replaces: not shown, and touched by nothing

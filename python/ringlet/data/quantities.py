@@ -184,11 +184,9 @@ class Varied(Section):
 
     value: float
     vary: float = Field(
-        default=0.0, ge=0.0, le=1.0, description="random change per lock, as a part of the value: 0.2 is ±20 %"
+        default=0.0, ge=0.0, le=1.0, description="random change per lock, relative to the value: 0.2 is ±20 %"
     )
-    noise: float = Field(
-        default=0.0, ge=0.0, le=1.0, description="smooth change over the scalp, as a part of the value"
-    )
+    noise: float = Field(default=0.0, ge=0.0, le=1.0, description="smooth change over the scalp, relative to the value")
     noise_wavelength: Annotated[float, Quantity("m", 1e-4, 10.0)] = Field(
         default=0.03, description="distance over which the noise changes"
     )

@@ -84,7 +84,7 @@ def refuse_inputs(path: Path | str) -> None:
     for reads in _open.get():
         if (file := reads.input_at(path)) is not None:
             source = "" if Path(path).absolute() == file else f" ({file})"
-            raise UserError(f"{path}: is a file that is read here{source}; choose another name")
+            raise UserError(f"{path}: is an input of this command{source}; choose another name")
 
 
 def same_file(path: Path | str, other: Path | str) -> bool:

@@ -230,7 +230,7 @@ def place_adopted(
         attributes,
         {"width": width.astype(np.float32).ravel()},
     )
-    none, t = np.zeros(len(lock), np.float32), np.clip(1.0 - u / kept.gather, 0.0, 1.0)
+    none, t = np.zeros(len(lock), np.float32), np.clip(1.0 - u / kept.root_falloff, 0.0, 1.0)
     layout = {
         "first": first,
         "offset": np.zeros((len(lock), 2), np.float32),

@@ -61,7 +61,7 @@ class Dye(Section):
 
     color: Color = Field(default="#b4531f", description="colour of dyed hair, in sRGB: `#rrggbb`")
     amount: Annotated[Ramped, Quantity("", 0.0, 1.0)] = Field(
-        default=Ramped(value=1.0), description="how far it replaces the natural colour; a ramp gives an ombré"
+        default=Ramped(value=1.0), description="how much of the natural colour it replaces; a ramp gives an ombré"
     )
     mask: Annotated[Mask, Quantity("", 0.0, 1.0)] = Field(
         default=Mask(), description='which locks, and where along them, such as streaks: `{ where = "random < 0.2" }`'
@@ -102,13 +102,13 @@ class ColorSettings(Section):
     )
     redness: Annotated[Ramped, Quantity("", 0.0, 1.0)] = Field(
         default=Ramped(value=HAIR_COLORS[DEFAULT_COLOR].redness),
-        description="part of it that is pheomelanin: 0 ashen, 0.9 ginger",
+        description="share of the melanin that is pheomelanin: 0 ashen, 0.9 ginger",
     )
     vary_hairs: Annotated[float, Quantity("", 0.0, 1.0)] = Field(
         default=0.2, description="random change of the concentration from hair to hair: 0.2 is ±20 %"
     )
     gray: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
-        default=Varied(value=0.0), description="part of the hairs that are white"
+        default=Varied(value=0.0), description="fraction of the hairs that are white"
     )
     dye: Dye | None = Field(default=None, description="dyed hair; none when absent")
     dyes: list[Dye] = Field(

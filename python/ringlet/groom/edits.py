@@ -22,9 +22,9 @@ class Move(Section):
     """A point of a lock that was pulled, with its falloff along the lock."""
 
     at: Annotated[float, Quantity("", 0.0, 1.0)] = Field(description="place on the lock, from root (0) to tip (1)")
-    by: Place = Field(description="how far: along the two axes across the shape of the lock, and along it")
+    by: Place = Field(description="displacement: along the two axes across the shape of the lock, and along it")
     falloff: Annotated[float, Quantity("", 0.001, 10.0)] = Field(
-        default=0.2, description="part of the lock on either side that comes with it, less and less"
+        default=0.2, description="part of the lock, to either side, over which the pull falls off"
     )
 
 
@@ -43,10 +43,11 @@ class Edit(Section):
         default={}, description='settings of this lock alone, such as `"curl.width" = "8 mm"`'
     )
     curve: list[Place] | None = Field(
-        default=None, description="in place of the lock: points from its root, in tangent, bitangent and normal there"
+        default=None,
+        description="points from the root that replace the lock, in tangent, bitangent and normal of the root",
     )
-    offsets: list[Place] = Field(default=[], description="how far points at even places from root to tip are moved")
-    move: list[Move] = Field(default=[], description="places that were pulled")
+    offsets: list[Place] = Field(default=[], description="displacements of points at even places from root to tip")
+    move: list[Move] = Field(default=[], description="points that were pulled")
 
     @model_validator(mode="after")
     def _not_empty(self) -> Edit:

@@ -1,4 +1,4 @@
-"""The fiber of hair: its roughness, the tilt of its cuticle, and the section."""
+"""The fibre of hair: its roughness, the tilt of its cuticle, and its cross-section."""
 
 from __future__ import annotations
 
@@ -19,24 +19,26 @@ FEWEST_POINTS = 4.0  # points for each half turn of a section, below which its t
 
 
 class FiberSettings(Section):
-    """The fiber of hair, for each lock and each hair."""
+    """The fibre of hair, for each lock and each hair."""
 
     roughness: Annotated[Varied | None, Quantity("", 0.05, 1.0)] = Field(
         default=None,
-        description="roughness along the hair: the width of the highlight; as the color has it when absent",
+        description="width of the highlight along the hair: larger is duller; that of the colour when absent",
     )
     azimuthal_roughness: Annotated[Varied | None, Quantity("", 0.05, 1.0)] = Field(
         default=None,
-        description="roughness around the hair: how soft light wraps about it; as the color has it when absent",
+        description="roughness around the hair: larger spreads light further around it; that of the colour when absent",
     )
     tilt: Annotated[Varied, Quantity("deg", 0.0, 10.0)] = Field(
-        default=Varied(value=2.0), description="tilt of the cuticle's scales, which moves the highlight"
+        default=Varied(value=2.0),
+        description="tilt of the scales of the cuticle, which moves the highlight along the hair",
     )
     flatness: Annotated[Varied, Quantity("", 0.0, 0.9)] = Field(
-        default=Varied(value=0.0), description="section of the fiber: 0 round, 0.5 an ellipse half as thick as wide"
+        default=Varied(value=0.0),
+        description="cross-section of the hair: 0 round, 0.5 an ellipse half as thick as wide",
     )
     twist_pitch: Annotated[Varied, Quantity("m", 1e-4, 1.0)] = Field(
-        default=Varied(value=0.02), description="length over which an elliptical section turns once about the hair"
+        default=Varied(value=0.02), description="length over which an elliptical cross-section turns once"
     )
     vary_hairs: Annotated[float, Quantity("", 0.0, 1.0)] = Field(
         default=0.0, description="random change of all of these from hair to hair: 0.2 is ±20 %"

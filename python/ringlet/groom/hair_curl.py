@@ -27,14 +27,14 @@ class Families(Section):
     """Sub-clumps of each lock: its hairs are drawn to the middle of the family that they stand nearest to."""
 
     count: Annotated[Varied, Quantity("", 1, MOST_FAMILIES)] = Field(
-        default=Varied(value=5), description="families of a lock"
+        default=Varied(value=5), description="number of families in a lock"
     )
     tightness: Annotated[Ramped, Quantity("", 0.0, 1.0)] = Field(
         default=Ramped(value=0.8, ramp=[(0, 0), (0.3, 1), (1, 0.9)]),
-        description="how far hairs are drawn together: 0 not, 1 to the radius of a family",
+        description="how far hairs move to the middle of their family: 0 not, 1 to its radius",
     )
     radius: Annotated[Varied, Quantity("m", 0.0, 0.05)] = Field(
-        default=Varied(value=0.0001), description="radius of a family that is wholly drawn together"
+        default=Varied(value=0.0001), description="radius of a family at tightness 1"
     )
     noise: Annotated[Varied, Quantity("m", 0.0, 0.05)] = Field(
         default=Varied(value=0.0), description="how far families wander from their place in the lock"
@@ -45,20 +45,21 @@ class HairCurl(Section):
     """How hairs follow the coil of their lock. The centre line of a coil is the lock smoothed over one turn."""
 
     drift: Annotated[Varied, Quantity("", 0.0, 5.0)] = Field(
-        default=Varied(value=0.1), description="how far the phase of hairs drifts up to the tip (deviation, in turns)"
+        default=Varied(value=0.1),
+        description="drift of the phase of hairs up to the tip (standard deviation, in turns)",
     )
     slips: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
-        default=Varied(value=0.1), description="part of the hairs whose phase slips somewhere along the lock"
+        default=Varied(value=0.1), description="fraction of the hairs whose phase slips at some place along the lock"
     )
     slip: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
-        default=Varied(value=0.3), description="by how much these slip, in turns"
+        default=Varied(value=0.3), description="size of a slip, in turns"
     )
     coherence: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
-        default=Varied(value=0.5), description="how much of drift and slips the hairs of a family share"
+        default=Varied(value=0.5), description="fraction of drift and slips that the hairs of a family share"
     )
     escape: Annotated[Ramped, Quantity("m", 0.0, 0.1)] = Field(
         default=Ramped(value=0.0, ramp=[(0, 0), (0.4, 0.2), (1, 1)]),
-        description="how far the coils of hairs leave the centre line of the lock (deviation)",
+        description="distance of the coils of hairs from the centre line of the lock (standard deviation)",
     )
     relax: Annotated[Ramped, Quantity("", 0.0, 1.0)] = Field(
         default=Ramped(value=0.0, vary=0.3, ramp=[(0, 0), (0.8, 0), (1, 1)]),
@@ -71,19 +72,19 @@ class HairCoil(Section):
 
     width: Annotated[Ramped, Quantity("m", 0.0, 0.05)] = Field(
         default=Ramped(value=0.0015, vary=0.3, ramp=[(0, 0), (0.1, 1), (1, 1)]),
-        description="diameter; it varies from hair to hair",
+        description="diameter; varies from hair to hair",
     )
     pitch: Annotated[Varied, Quantity("m", 5e-4, 1.0)] = Field(
-        default=Varied(value=0.006, vary=0.2), description="length of the lock per turn; it varies from hair to hair"
+        default=Varied(value=0.006, vary=0.2), description="length of the lock per turn; varies from hair to hair"
     )
     kink: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
         default=Varied(value=0.0), description="0 a coil, 1 a zigzag in a plane"
     )
     irregularity: Annotated[Varied, Quantity("", 0.0, 0.9)] = Field(
-        default=Varied(value=0.3), description="how much the pitch wanders along a hair"
+        default=Varied(value=0.3), description="how much the pitch varies along a hair: 0 is even"
     )
     coherence: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
-        default=Varied(value=0.0), description="how much of phase and pitch the hairs of a family share"
+        default=Varied(value=0.0), description="fraction of phase and pitch that the hairs of a family share"
     )
 
 

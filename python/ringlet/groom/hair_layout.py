@@ -30,7 +30,7 @@ FRIZZ_KNOTS = 8
 PLASTIC = np.array([0.7548776662466927, 0.5698402909980532])  # steps of a low-discrepancy sequence in the plane
 MIRRORED = 1e-4  # distance from the region from which a root is mirrored at its border [m]
 LATEST_JOIN = 0.9  # part of a lock
-PACE_EASE = 0.3  # half the part of `gather` over which a flat hair turns into its lock
+PACE_EASE = 0.3  # half the part of `root_falloff` over which a flat hair turns into its lock
 
 
 def place_hairs(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -> tuple[Curves, dict[str, Any]]:
@@ -198,7 +198,7 @@ def _layout(settings: HairSettings, per_lock: Values, hairs: Placed, u: NDArray)
         * np.linspace(0.0, 1.0, FRIZZ_KNOTS).repeat(2)
         * (2.0 * Random(settings.seed, "hairs/frizz").uniforms(ids, 2 * FRIZZ_KNOTS) - 1.0)
     )
-    t = np.clip(1.0 - u / settings.gather, 0.0, 1.0)
+    t = np.clip(1.0 - u / settings.root_falloff, 0.0, 1.0)
     return {
         "offset": (hairs.radius[:, None] * hairs.disk).astype(np.float32),
         "tip": tip.astype(np.float32),
@@ -207,16 +207,16 @@ def _layout(settings: HairSettings, per_lock: Values, hairs: Placed, u: NDArray)
         "frizz": knots.astype(np.float32),
         "profile": settings.lock_radius.along(u).astype(np.float32),
         "hold": (t * t * (3.0 - 2.0 * t)).astype(np.float32),
-        "pace": _pace(u, settings.gather).astype(np.float32),
+        "pace": _pace(u, settings.root_falloff).astype(np.float32),
     }
 
 
-def _pace(u: NDArray, gather: float) -> NDArray[np.float64]:
+def _pace(u: NDArray, root_falloff: float) -> NDArray[np.float64]:
     """How far along its lock a flat hair is at its parameters u: it starts once it has come there, smoothly."""
-    soft = PACE_EASE * gather
-    late = np.clip(u - gather + soft, 0.0, None)
+    soft = PACE_EASE * root_falloff
+    late = np.clip(u - root_falloff + soft, 0.0, None)
     pace = np.where(late < 2.0 * soft, late * late / (4.0 * soft), late - soft)
-    return pace / max(1.0 - gather, 1e-9) if gather < 1.0 else 0.0 * u
+    return pace / max(1.0 - root_falloff, 1e-9) if root_falloff < 1.0 else 0.0 * u
 
 
 def _felted(settings: HairSettings, per_lock: Values, hairs: Placed, frizz: NDArray) -> NDArray[np.float32]:

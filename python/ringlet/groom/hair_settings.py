@@ -32,49 +32,52 @@ class HairSettings(Section):
     )
     cover: Annotated[float | None, Quantity("", 0.0, 0.999)] = Field(
         default=None,
-        description="part of the scalp that hair hides from cameras around the head; the density is raised to that",
+        description="fraction of the scalp that hair hides from cameras around the head; the density is raised "
+        "until it does",
     )
     mask: Annotated[Mask | None, Quantity("", 0.0, 1.0)] = Field(
-        default=None, description="part of the hairs that grow: a number, map, region or expression; all when absent"
+        default=None,
+        description="fraction of the hairs that grow: a number, map, region or expression; all when absent",
     )
     points: int | None = Field(
-        default=None, ge=2, le=10_000, description="points of a hair; those of the lock when absent"
+        default=None, ge=2, le=10_000, description="points per hair; those of the lock when absent"
     )
     lock_radius: Annotated[Ramped, Quantity("m", 0.0, 0.1)] = Field(
         default=Ramped(value=0.0012, ramp=[(0, 1), (0.5, 0.8), (1, 0.5)]),
         description="radius of a lock's cross-section",
     )
     lock_taper: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
-        default=Varied(value=0.0), description="how much narrower a lock gets towards its tip besides: 1 to a point"
+        default=Varied(value=0.0),
+        description="how much narrower a lock gets towards its tip, on top of the ramp of `lock_radius`: 1 to a point",
     )
     lock_flatness: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
         default=Varied(value=0.0), description="cross-section of a lock: 0 round, 1 a flat ribbon"
     )
     hollow: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
-        default=Varied(value=0.0), description="where hairs are in it: 0 everywhere, 1 at the rim"
+        default=Varied(value=0.0), description="where hairs are in the cross-section: 0 everywhere, 1 at the rim"
     )
     root_radius: Annotated[Varied, Quantity("m", 0.0, 0.1)] = Field(
         default=Varied(value=0.003),
         description="radius on the scalp that a lock's roots cover; those of a section's strand cover its share of the "
         "section, and lie flat up to where it grows",
     )
-    gather: Annotated[float, Quantity("", 0.001, 1.0)] = Field(
-        default=0.15, description="part of the lock over which they come together"
+    root_falloff: Annotated[float, Quantity("", 0.001, 1.0)] = Field(
+        default=0.15, description="part of the lock, from its root, over which its hairs come together"
     )
     width: Annotated[Ramped, Quantity("m", 1e-6, 0.01)] = Field(
         default=Ramped(value=0.00009, vary=0.2, ramp=[(0, 1), (0.7, 0.9), (1, 0.3)]), description="diameter of a hair"
     )
     shorter: Annotated[Varied, Quantity("", 0.0, 0.9)] = Field(
-        default=Varied(value=0.08), description="by how much the shortest hairs of a lock are shorter"
+        default=Varied(value=0.08), description="by how much the shortest hairs of a lock are shorter, as a fraction"
     )
     frizz: Annotated[Varied, Quantity("m", 0.0, 0.05)] = Field(
-        default=Varied(value=0.0004), description="how far hairs wander from their place in the lock"
+        default=Varied(value=0.0004), description="how far hairs wander within the lock; larger is fuzzier"
     )
     stray: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
-        default=Varied(value=0.04), description="part of the hairs that leave their lock"
+        default=Varied(value=0.04), description="fraction of the hairs that leave their lock"
     )
     stray_distance: Annotated[Varied, Quantity("m", 0.0, 0.1)] = Field(
-        default=Varied(value=0.004), description="how far those wander"
+        default=Varied(value=0.004), description="how far stray hairs leave their lock"
     )
     blend: Annotated[Ramped, Quantity("", 0.0, 1.0)] = Field(
         default=Ramped(value=0.0),
@@ -96,7 +99,7 @@ class HairSettings(Section):
     offset: Annotated[float, Quantity("", 0.0, 10.0)] = Field(
         default=1.0, description="factor on the distances of adopted hairs from their lock"
     )
-    seed: int = Field(default=1, ge=0, le=2**31, description="another seed, other places in the locks")
+    seed: int = Field(default=1, ge=0, le=2**31, description="another seed gives hairs other places in their locks")
 
     @property
     def sections(self) -> dict[str, Section]:

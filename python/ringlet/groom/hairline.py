@@ -24,13 +24,13 @@ class Hairline(Section):
 
     width: Annotated[float, Quantity("m", 1e-4, 0.5)] = Field(default=0.012, description="width of the band")
     density: Annotated[float, Quantity("", 0.0, 1.0)] = Field(
-        default=0.3, description="part of the locks that grow at the border itself"
+        default=0.3, description="fraction of the locks that grow at the border itself"
     )
     length: Annotated[float, Quantity("", 0.01, 1.0)] = Field(
-        default=0.45, description="length of locks at the border, as a part of what it is elsewhere"
+        default=0.45, description="length of locks at the border, relative to their length elsewhere"
     )
-    flat: Annotated[float, Quantity("", 0.0, 1.0)] = Field(
-        default=0.5, description="how far locks at the border lie down: 0 not, 1 along the skin"
+    laid: Annotated[float, Quantity("", 0.0, 1.0)] = Field(
+        default=0.5, description="how far locks at the border are laid on the skin: 0 as elsewhere, 1 along it"
     )
 
     def of(self, scalp: Scalp) -> Fade:
@@ -70,7 +70,7 @@ class Fade:
         chord = points[:, -1] - points[:, 0]
         way = unit(chord) + UPRIGHT * self._inward(points[:, 0])
         way = unit(way - np.sum(way * normals, axis=1, keepdims=True) * normals)
-        laid = edges + (self._hairline.flat * (1.0 - inside))[:, None, None] * off * (way - normals)[:, None]
+        laid = edges + (self._hairline.laid * (1.0 - inside))[:, None, None] * off * (way - normals)[:, None]
         factor = self._hairline.length + (1.0 - self._hairline.length) * inside
         return along_edges(points[:, 0], factor[:, None, None] * sizes * unit(laid))
 

@@ -22,13 +22,13 @@ class HelperMesh(Source):
     """A closed mesh of a file, or an ellipsoid."""
 
     file: str | None = Field(
-        default=None, description="USD or OBJ file with the mesh, beside the recipe or with a full path"
+        default=None, description="USD or OBJ file with the mesh, next to the recipe or with a full path"
     )
     mesh: str | None = Field(default=None, description="prim of the mesh; needed when the file has several")
     middle: Place | None = Field(default=None, description="[x, y, z] of the middle of an ellipsoid, Y up")
-    width: Size = Field(default=0.3, description="of the ellipsoid, along x")
-    height: Size = Field(default=0.3, description="of the ellipsoid, along y")
-    depth: Size = Field(default=0.3, description="of the ellipsoid, along z")
+    width: Size = Field(default=0.3, description="width of the ellipsoid, along x")
+    height: Size = Field(default=0.3, description="height of the ellipsoid, along y")
+    depth: Size = Field(default=0.3, description="depth of the ellipsoid, along z")
 
     @model_validator(mode="after")
     def _one_source(self) -> HelperMesh:

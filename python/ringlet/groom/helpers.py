@@ -29,7 +29,7 @@ class HelperCurves(Source):
 
     points: list[Place] | None = Field(default=None, description="[x, y, z] of the points of a curve, Y up")
     file: str | None = Field(
-        default=None, description="USD, OBJ or .hair file with the curves, beside the recipe or with a full path"
+        default=None, description="USD, OBJ or .hair file with the curves, next to the recipe or with a full path"
     )
     prim: str | None = Field(default=None, description="prim of the curves; needed when the file has several")
 

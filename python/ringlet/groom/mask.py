@@ -22,12 +22,12 @@ class Mask(Section):
     """Weight of an operator: 0 no effect, 1 full effect. In a recipe a number, or a table
     ``{ value = …, ramp = …, map = …, region = …, where = … }``: the product of its entries."""
 
-    value: float = Field(default=1.0, ge=0.0, le=1.0, description="the same everywhere")
+    value: float = Field(default=1.0, ge=0.0, le=1.0, description="weight everywhere")
     ramp: Ramp = Field(default=[(0.0, 1.0), (1.0, 1.0)], description="[place, factor] from root (0) to tip (1)")
-    map: str | None = Field(default=None, description="painted values, of the locks or of the scalp at their roots")
+    map: str | None = Field(default=None, description="painted values of the locks, or of the scalp at their roots")
     region: str | None = Field(default=None, description="a named region of the scalp")
     falloff: Annotated[float, Quantity("m", 0.0, 1.0)] = Field(
-        default=0.0, description="distance beyond the region over which it falls off"
+        default=0.0, description="distance beyond the region over which the weight falls to 0"
     )
     where: Annotated[str, AfterValidator(expression.check)] | None = Field(
         default=None,

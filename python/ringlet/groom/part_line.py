@@ -34,7 +34,7 @@ class PartLine(Section):
     """A part line: hair on each side of a plane, or of drawn curves, turns away from it."""
 
     curve: str | None = Field(
-        default=None, description="name of helper curves along it, from `[curves]`; a plane when absent"
+        default=None, description="name of helper curves along the part line, from `[curves]`; a plane when absent"
     )
     across: Direction = Field(default=(1.0, 0.0, 0.0), description="direction from one side of the plane to the other")
     offset: Annotated[float, Quantity("m", -1.0, 1.0)] = Field(
@@ -43,7 +43,7 @@ class PartLine(Section):
         "head that faces +z",
     )
     falloff: Annotated[float, Quantity("m", 1e-3, 1.0)] = Field(
-        default=0.04, description="distance at which its effect is half of that on it"
+        default=0.04, description="distance from the part line at which the effect is half of that on it"
     )
 
     def away(

@@ -27,12 +27,14 @@ class Pin(Section):
     mask: Annotated[Mask, Quantity("", 0.0, 1.0)] = Field(
         default=Mask(), description="which locks, and where along them"
     )
-    firm: Annotated[float, Quantity("", 0.0, 1.0)] = Field(default=1.0, description="1 rigid, less is softer")
+    firm: Annotated[float, Quantity("", 0.0, 1.0)] = Field(
+        default=1.0, description="1 rigid; smaller is a softer spring"
+    )
     length: Annotated[float | None, Quantity("m", 0.0, 10.0)] = Field(
-        default=None, description="length from the root that is held; all of it when absent"
+        default=None, description="length from the root that is held; the whole lock when absent"
     )
     falloff: Annotated[float, Quantity("m", 0.0, 10.0)] = Field(
-        default=0.0, description="length beyond it over which the hold falls off"
+        default=0.0, description="length beyond that over which the hold falls off"
     )
 
     def weights(self, locks: Curves, scalp: Mesh, random: Random, what: str) -> NDArray[np.float64]:

@@ -30,7 +30,7 @@ class ScalpSettings(Source):
     """The mesh that hair grows on."""
 
     file: str | None = Field(
-        default=None, description="USD or OBJ file with the mesh, beside the recipe or with a full path"
+        default=None, description="USD or OBJ file with the mesh, next to the recipe or with a full path"
     )
     mesh: str | None = Field(default=None, description="prim of the mesh; needed when the file has several")
     surface: Literal["limit", "cage"] = Field(
@@ -56,47 +56,50 @@ def _kind_of_guides(data: Any) -> str:
 class Recipe(Section):
     """A groom from guides to hairs. Inside, lengths are in metres."""
 
-    ringlet: Literal[2] = Field(description="version of this format")
+    ringlet: Literal[2] = Field(description="version of the format")
     name: str = Field(default="", description="what the groom is called")
     seed: int = Field(default=1, ge=0, le=2**31, description="another seed gives another head of hair of the same kind")
     unit: LengthUnit = Field(default="cm", description="unit of lengths that are plain numbers")
     extends: str | None = Field(
         default=None,
-        description="another recipe, of which this one changes a few values: tables are merged, `false` takes "
-        "away a table or a value, `[shape.NAME]` changes an operator, `[[shape.append]]` adds one",
+        description="another recipe that this one changes: tables are merged, `false` removes a table or a value, "
+        "`[shape.NAME]` changes an operator, `[[shape.append]]` adds one",
     )
     edits: str | None = Field(
         default=None,
-        description="file of what was done by hand to locks and guides, beside the recipe; `ringlet edit` and "
-        "`ringlet view` write it",
+        description="file of manual edits of locks and guides, next to the recipe; `ringlet edit` and `ringlet "
+        "view` write it",
     )
-    scalp: ScalpSettings = Field(default=ScalpSettings(), description="where it grows")
+    scalp: ScalpSettings = Field(default=ScalpSettings(), description="the surface that hair grows on")
     maps: dict[str, str] = Field(
         default={}, description="pictures over the texture coordinates of the scalp, as maps by name: black 0, white 1"
     )
-    curves: dict[str, HelperCurves] = Field(default={}, description="curves by name that operators go by")
-    meshes: dict[str, HelperMesh] = Field(default={}, description="meshes by name that operators go by")
+    curves: dict[str, HelperCurves] = Field(
+        default={}, description="helper curves by name, which guides and operators refer to"
+    )
+    meshes: dict[str, HelperMesh] = Field(default={}, description="helper meshes by name, which operators refer to")
     guides: Annotated[
         Annotated[Grown, Tag("grown")] | Annotated[Drawn, Tag("drawn")], Discriminator(_kind_of_guides)
     ] = Field(
         default=Grown(), description="the curves that give silhouette and length: grown, or drawn and read from a file"
     )
-    sculpt: list[Sculpt] = Field(default=[], description="what was done to single guides by hand")
+    sculpt: list[Sculpt] = Field(default=[], description="manual edits of single guides")
     locks: Locks = Field(default=Locks(), description="the locks between the guides")
     shape: list[ShapeOperator] = Field(default=[], description="operators on the shape of the locks, in order")
     curl: Curl | None = Field(default=None, description="the curl; straight hair when absent")
-    edit: list[Edit] = Field(default=[], description="what was done to single locks by hand")
+    edit: list[Edit] = Field(default=[], description="manual edits of single locks")
     pin: list[Pin] = Field(default=[], description="hair that is held to the skin")
-    collide: Collide = Field(default=Collide(), description="keeping out of the head and of what is worn")
+    collide: Collide = Field(default=Collide(), description="keeps locks out of the head and of what is worn")
     hairs: HairSettings = Field(default=HairSettings(), description="the hairs of each lock")
     color: ColorSettings | None = Field(default=None, description="colour of the hair; files have none when absent")
     fiber: FiberSettings | None = Field(
-        default=None, description="what a hair is like; as the colour has it when absent"
+        default=None, description="optics and cross-section of a hair; those of its colour when absent"
     )
     grooms: Annotated[dict[str, Recipe], WithJsonSchema({"type": "object"})] = Field(
         default={},
-        description="several grooms on one head, such as scalp hair, brows and lashes: each is a whole recipe that "
-        "takes from outside of it what it does not say itself, and `extends` another as it is. One groom when absent",
+        description="several grooms on one head, such as scalp hair, brows and lashes: each is a recipe of its "
+        "own, may extend another, and takes what it does not set from outside of `[grooms]`. One "
+        "groom when absent",
     )
 
     _path: Path | None = PrivateAttr(None)

@@ -98,7 +98,7 @@ class Scalp:
         )  # in powers of 2: a few more samples use the same candidates
         each = np.floor(areas * density + random.uniform(region, IDS_PER_TRIANGLE)).astype(np.int64)
         if each.max() >= IDS_PER_TRIANGLE:
-            raise UserError(f"{self.where}: {count} curves on so few triangles; subdivide the mesh")
+            raise UserError(f"{self.where}: {count} curves do not fit on its triangles; subdivide the mesh")
         first = np.repeat(np.cumsum(each) - each, each)
         ids = np.repeat(region.astype(np.int64), each) * IDS_PER_TRIANGLE + (np.arange(each.sum()) - first)
         triangle = np.repeat(region, each)
@@ -280,7 +280,7 @@ def _check_region(scalp: Scalp) -> None:
     _, uses = np.unique(np.sort(edges, axis=1), axis=0, return_counts=True)
     if uses.max() > 2:
         raise UserError(
-            f"{scalp.where}: an edge is shared by {uses.max()} triangles; the scalp must be a manifold surface"
+            f"{scalp.where}: an edge is shared by {uses.max()} triangles; must be at most 2: split the surface there"
         )
     if len(np.unique(edges, axis=0)) < len(edges):
-        raise UserError(f"{scalp.where}: neighbouring faces are turned opposite ways; make their normals agree")
+        raise UserError(f"{scalp.where}: neighbouring faces have opposite orientations; make their normals agree")

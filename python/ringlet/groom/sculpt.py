@@ -26,11 +26,11 @@ class Sculpt(Section):
     then moved, each in the rotation-minimising frame along the guide."""
 
     guide: int = Field(ge=-limits.ID, le=limits.ID, description="id of the guide")
-    length: Annotated[float, Quantity("", 0.01, 100.0)] = Field(default=1.0, description="times its length")
+    length: Annotated[float, Quantity("", 0.01, 100.0)] = Field(default=1.0, description="factor on its length")
     offsets: list[Place] = Field(
         default=[],
-        description="how far points at even places from root to tip are moved: along the two axes across the guide, "
-        "and along it",
+        description="displacements of points at even places from root to tip: along the two axes across the "
+        "guide, and along it",
     )
 
     @model_validator(mode="after")

@@ -37,13 +37,13 @@ class Sections(Section):
 
     pattern: Literal["grid", "brick", "rows", "triangles", "radial", "drawn"] = Field(
         default="brick",
-        description="squares, squares in bond, rows from front to back, triangles, rings, or what lies between drawn "
-        "`part_lines`",
+        description="pattern of the sections: squares, squares in bond (brick), rows from front to back, "
+        "triangles, rings, or what lies between drawn `part_lines`",
     )
     part_lines: str | None = Field(
         default=None,
-        description="name of helper curves along the part lines of the pattern `drawn`, from `[curves]`; they are "
-        "projected on the scalp, and a quarter of the size longer at their ends",
+        description="of the pattern `drawn`: name of helper curves along the part lines, from `[curves]`; they "
+        "are projected onto the scalp and extended by a quarter of the size",
     )
     size: Annotated[float, Quantity("m", 2e-3, 1.0)] = Field(
         default=0.025, description="width of a section; of drawn ones, about that of the smallest"
@@ -52,9 +52,9 @@ class Sections(Section):
         default=0.002, description="width of the visible part line between sections, where nothing grows"
     )
     jitter: Annotated[float, Quantity("", 0.0, 1.0)] = Field(
-        default=0.0, description="how much part lines wander, as a part of the size"
+        default=0.0, description="how much part lines wander, relative to the size"
     )
-    turn: Annotated[float, Quantity("deg", -180.0, 180.0)] = Field(default=0.0, description="turns the pattern")
+    turn: Annotated[float, Quantity("deg", -180.0, 180.0)] = Field(default=0.0, description="rotation of the pattern")
     strands: int | None = Field(
         default=None,
         ge=1,
@@ -63,7 +63,7 @@ class Sections(Section):
         "sections, locks grow only where `count` or `spacing` says how many",
     )
     mask: Annotated[Mask, Quantity("", 0.0, 1.0)] = Field(
-        default=Mask(), description="where there are sections: those whose middle has more than a half"
+        default=Mask(), description="where there are sections: those with a weight over a half at their middle"
     )
 
     @model_validator(mode="after")

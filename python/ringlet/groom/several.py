@@ -51,7 +51,7 @@ def join_grooms(grooms: Mapping[str, Groom]) -> Groom:
             )
         if groom.offsets is not None:
             raise UserError(
-                f"grooms.{name}.hairs.file: adopted hairs cannot be one of several grooms; "
+                f"grooms.{name}.hairs.file: adopted hairs cannot be combined with other grooms; "
                 "keep them in a recipe of their own"
             )
     offsets = id_offsets(names)
@@ -159,7 +159,8 @@ def recipe_of_lock(recipe: Recipe, lock: int) -> tuple[Recipe, int]:
     for one, offset in recipes_of(recipe):
         if not recipe.grooms or abs(lock - offset) < IDS_PER_GROOM // 2:
             return one, lock - offset
-    raise UserError(f"{recipe.path or 'recipe'}: lock {lock} is of no groom; there are: {', '.join(recipe.grooms)}")
+    where, names = recipe.path or "recipe", ", ".join(recipe.grooms)
+    raise UserError(f"{where}: lock {lock} belongs to no groom; there are: {names}")
 
 
 def _scalp(groom: Groom) -> tuple[Any, ...]:

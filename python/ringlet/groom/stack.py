@@ -33,6 +33,7 @@ from ringlet.groom.operators.operator import arc_lengths, grid, unit
 from ringlet.groom.operators.shape import Displacement, Shape
 from ringlet.groom.operators.tied import TO_TIE
 from ringlet.groom.pins import pinned
+from ringlet.groom.plausibility import odd_sizes
 from ringlet.groom.recipe import Recipe
 from ringlet.groom.scalp import Scalp
 from ringlet.groom.sculpt import Sculpted
@@ -44,7 +45,6 @@ MUCH_LONGER = 2.0  # factor on the length of a lock that a displacement is not e
 STEEPLY_INWARD = -0.5  # cosine between a root's normal and the start of its lock
 MANY = 0.1  # share of locks; single ones that hang steeply, or over an edge, are laid along the scalp and need no word
 START = 0.02  # of a lock [m]: further along, hair that lies on a head is under the tangent plane of its root
-PLAUSIBLE_SIZES = (0.03, 2.0)  # [m] width of a scalp; a size ten times off suggests a wrong unit
 
 
 @dataclass
@@ -173,7 +173,7 @@ def make_groom(
         offsets=offsets,
         conflicts=[
             *_conflicts(recipe, unsculpted, curves),
-            *_odd_size(scalp, recipe.scalp.region),
+            *odd_sizes(recipe, surface, unsculpted, curves),
             *lengthened,
             *_inward(before_contact, surface),
             *_not_strands(curves),
@@ -254,16 +254,6 @@ def _conflicts(recipe: Recipe, guides: Curves, locks: Curves) -> list[str]:
             for lock in edited
         ),
     ]
-
-
-def _odd_size(mesh: Mesh, region: str | None) -> Iterator[str]:
-    """A message for a scalp of implausible size: its file may name a wrong unit."""
-    size = float(np.ptp(mesh.points[mesh.triangles[mesh.region(region)]].reshape(-1, 3), axis=0).max())
-    if not PLAUSIBLE_SIZES[0] <= size <= PLAUSIBLE_SIZES[1]:
-        yield (
-            f"the scalp is {size:.2g} m across; see whether its file names the unit in which it was made "
-            "(metersPerUnit, or `unit` under [scalp] for an OBJ)"
-        )
 
 
 def _lengthened(name: str, before: Curves, after: Curves) -> Iterator[str]:

@@ -78,7 +78,7 @@ def check_output(output: Path, settings: PictureSettings) -> None:
         check_place(output)
     folder = frames_folder(output)
     if folder.exists() and not folder.is_dir():
-        raise UserError(f"{folder}: is a file, where the frames go; give another name")
+        raise UserError(f"{folder}: is a file, but frames need a folder; give another name")
 
 
 def film(

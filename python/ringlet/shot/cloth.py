@@ -34,11 +34,11 @@ class ClothMaterial(Section):
         default=0.005,
         ge=0,
         le=100,
-        description="[s] every strain resists its own rate with this time times its stiffness",
+        description="[s] damping time: each strain resists its rate by this times its stiffness; larger settles sooner",
     )
     mass_damping: float = Field(default=0.0, ge=0, le=1e4, description="[1/s] rate at which velocities decay")
     drag: float = Field(default=0.05, ge=0, le=1e3, description="air drag per area and speed [kg/(m² s)]")
-    thickness: float = Field(default=1e-3, gt=0, le=0.1, description="[m] how near other things come")
+    thickness: float = Field(default=1e-3, gt=0, le=0.1, description="[m] distance at which contact begins")
     friction: float = Field(default=0.3, ge=0, le=10, description="Coulomb's μ of a lock on it")
 
 
@@ -75,7 +75,9 @@ class ShotCloth(Section):
     """A cloth that locks, colliders, other cloths and itself touch: the same step moves it with the locks."""
 
     name: str = Field(
-        default="", pattern="^([A-Za-z_][A-Za-z0-9_]*)?$", description="by default the last part of its prim's path"
+        default="",
+        pattern="^([A-Za-z_][A-Za-z0-9_]*)?$",
+        description="name for pins and friction; by default the last part of its prim's path",
     )
     file: Path | None = Field(
         default=None, description="USD file; by default that of the head. A relative name counts from the shot"
@@ -84,14 +86,14 @@ class ShotCloth(Section):
         default=None,
         description="path of its prim: the mesh there, or the only one below it; without it the only one in `file`",
     )
-    material: ClothMaterial = Field(default=ClothMaterial(), description="what it is made of")
+    material: ClothMaterial = Field(default=ClothMaterial(), description="material of the cloth")
     pin: tuple[Pin, ...] = Field(
-        default=(), description="vertices that go where they are told; a later entry counts more"
+        default=(), description="vertices whose motion is prescribed; later entries override earlier ones"
     )
     shrink: Scale | tuple[tuple[Frame, Scale], ...] = Field(
         default=1.0,
-        description="how large its rest shape is, by what the mesh is: below 1 it is elastic that draws together. Or "
-        "a list of `[frame, scale]`, straight in between",
+        description="size of the rest shape relative to the mesh: below 1 elastic draws together. Or a list of "
+        "`[frame, scale]`, linear in between",
     )
 
     @field_validator("shrink")

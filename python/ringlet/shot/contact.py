@@ -13,28 +13,32 @@ class Contact(Section):
     """Contact of strands with one another and with bodies."""
 
     radius: float = Field(
-        default=5e-4, gt=0, le=0.1, description="[m] half the distance at which two locks begin to push each other away"
+        default=5e-4,
+        gt=0,
+        le=0.1,
+        description="[m] half the distance at which two locks begin to repel each other; larger is bulkier",
     )
     friction: float = Field(default=0.3, ge=0, le=10, description="Coulomb's μ of lock on lock")
     stiffness: float = Field(
         default=1.0,
         gt=0,
         le=1e6,
-        description="scales how hard contacts push, which is as hard as what they have to bear asks for",
+        description="factor on the contact stiffness, which follows the load of each contact",
     )
     creep_speed: float = Field(
         default=1e-3,
         gt=0,
         le=1,
-        description="[m/s] times a step: what is sheared less than that sticks. By default 1e-5 where rest.mode is "
-        "'equilibrium'",
+        description="[m/s] sliding speed below which friction sticks; smaller holds more firmly. By default 1e-5 "
+        "where rest.mode is 'equilibrium'",
     )
-    parting_speed: float = Field(
+    separation_speed: float = Field(
         default=2e-3,
         ge=0,
         le=1,
-        description="[m/s] at which locks that begin nearer than they may be part; 0, which is the default where "
-        "rest.mode is 'equilibrium': they stay",
+        description="[m/s] at which locks that begin closer than their contact distance separate; larger clears "
+        "overlaps sooner and pushes harder. 0: they stay, which is the default where rest.mode is "
+        "'equilibrium'",
     )
 
 
@@ -50,25 +54,28 @@ class Pair(Section):
 class ShotContact(Contact):
     """Contact of locks with one another, with colliders and with cloth."""
 
-    on: bool = Field(default=True, description="false: everything passes through everything, as without this table")
+    on: bool = Field(default=True, description="false: no contact, as without this table")
     own_radius: float = Field(
         default=0.85,
         ge=0,
         le=1,
-        description="locks that have a radius of their own, as strands of braids and locs, touch at this part of it, "
-        "where that is more than `radius`; below 1, since the points along a lock cut corners off its path",
+        description="locks that have a radius of their own, such as strands of braids and locs, touch at this "
+        "fraction of it, if that is more than `radius`; below 1, as straight edges cut the corners of "
+        "a lock's path",
     )
     pair: tuple[Pair, ...] = Field(
         default=(),
-        description="friction of pairs; by default a lock on something has what that says, and two others the "
-        "geometric mean of what both say",
+        description="friction of pairs; by default a lock on something has the friction of that, and two other "
+        "things the geometric mean of both",
     )
 
 
 class Collider(Section):
     """Meshes that locks cannot pass through. Where several entries name one mesh, the last of them counts."""
 
-    name: str = Field(default="", description="for pins and friction; by default the last part of each mesh's path")
+    name: str = Field(
+        default="", description="name for pins and friction; by default the last part of each mesh's path"
+    )
     file: Path | None = Field(
         default=None,
         description="USD file with the animation of the groom's head; by default that head. A relative name counts "
@@ -77,8 +84,11 @@ class Collider(Section):
     mesh: str | None = Field(
         default=None, description="path of a prim: the meshes at and below it; by default all that are visible"
     )
-    animated: bool = Field(default=True, description="false: it stays as it is at the first frame of the shot")
+    animated: bool = Field(default=True, description="false: it stays as at the first frame of the shot")
     thickness: float = Field(
-        default=5e-4, ge=0, le=0.1, description="[m] how far from the surface contact begins, besides `contact.radius`"
+        default=5e-4,
+        ge=0,
+        le=0.1,
+        description="[m] distance from the surface at which contact begins, in addition to `contact.radius`",
     )
     friction: float = Field(default=0.3, ge=0, le=10, description="Coulomb's μ of a lock on it")

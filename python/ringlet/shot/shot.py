@@ -18,7 +18,7 @@ from ringlet.shot.rest import Rest
 from ringlet.shot.solver import Solver
 from ringlet.shot.variation import Variation
 
-STAYS = {"parting_speed": 0.0, "creep_speed": 1e-5}  # defaults of contact in equilibrium with the groom [m/s]
+STAYS = {"separation_speed": 0.0, "creep_speed": 1e-5}  # defaults of contact in equilibrium with the groom [m/s]
 
 
 FrameNumber = Annotated[int, Field(ge=-limits.FRAME, le=limits.FRAME)]
@@ -28,15 +28,15 @@ Strength = Annotated[float, Field(ge=-1000, le=1000)]
 class Forces(Section):
     """External forces on the strands, in metres and Y-up whatever the files use."""
 
-    gravity: tuple[Strength, Strength, Strength] = Field(default=(0.0, -9.81, 0.0), description="[m/s²]")
+    gravity: tuple[Strength, Strength, Strength] = Field(default=(0.0, -9.81, 0.0), description="acceleration [m/s²]")
     wind: tuple[Strength, Strength, Strength] = Field(default=(0.0, 0.0, 0.0), description="velocity of the air [m/s]")
 
 
 class Shot(Section):
     """A simulation of a groom on its animated scalp. SI units."""
 
-    ringlet: Literal[2] = Field(description="version of this format")
-    name: str = Field(default="", description="what the shot is called")
+    ringlet: Literal[2] = Field(description="version of the format")
+    name: str = Field(default="", description="name of the shot")
     groom: Path = Field(
         description="recipe (.toml) or groom (.usdc, .usda, .usd); a relative name counts from the shot"
     )
@@ -45,22 +45,26 @@ class Shot(Section):
         default=24,
         ge=0,
         le=100_000,
-        description="frames simulated before the first, with the head still, so that hair hangs; 0: the groom exactly",
+        description="frames simulated before the first, with the head still, so that hair settles; 0: the shot "
+        "begins with the groom exactly",
     )
     held: int = Field(
-        default=3, ge=2, le=1000, description="vertices of each lock, from its root, that the scalp holds"
+        default=3,
+        ge=2,
+        le=1000,
+        description="vertices of each lock, from its root, that the scalp holds; more hold its direction more firmly",
     )
-    strands: Material = Field(default=Material(), description="what locks are made of")
-    variation: Variation = Field(default=Variation(), description="how the material varies")
-    rest: Rest = Field(default=Rest(), description="the shape that strands remember")
-    solver: Solver = Field(default=Solver(), description="how a time step is solved")
-    forces: Forces = Field(default=Forces(), description="what acts from outside")
+    strands: Material = Field(default=Material(), description="material of the locks")
+    variation: Variation = Field(default=Variation(), description="variation of the material over locks and along them")
+    rest: Rest = Field(default=Rest(), description="rest shape of the locks")
+    solver: Solver = Field(default=Solver(), description="solution of a time step")
+    forces: Forces = Field(default=Forces(), description="external forces")
     contact: ShotContact | None = Field(
-        default=None, description="how locks touch; without this table they pass through everything"
+        default=None, description="contact of locks; without this table they pass through everything"
     )
     collider: tuple[Collider, ...] = Field(
         default=(),
-        description="what locks touch besides one another; by default the head with all that is visible there",
+        description="meshes that locks touch; by default the head with all that is visible there",
     )
     cloth: tuple[ShotCloth, ...] = Field(default=(), description="cloth that moves with the locks and touches them")
 

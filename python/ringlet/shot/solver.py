@@ -21,46 +21,47 @@ class Solver(Section):
         default=5,
         ge=1,
         le=MOST_ITERATIONS,
-        description="Newton iterations per step; 1 is stable, but with few hair comes late: "
-        "5 for a look, 20 for the last run",
+        description="Newton iterations per step: 5 for a look, 20 for the final run. With fewer, hair lags behind "
+        "its forces; 1 is stable too",
     )
     extra: int = Field(
         default=60,
         ge=0,
         le=MOST_ITERATIONS,
-        description="iterations more, at most, for locks held back and stretched by over 3 %; fewer bound "
-        "what a step costs, and leave them stretched",
+        description="largest number of further iterations, for locks that are stretched by over 3 % where contact "
+        "limits their motion; fewer make a step cheaper and leave them stretched",
     )
     until_converged: bool = Field(
         default=False,
-        description=f"go on until every lock has converged, at most {MOST_ITERATIONS} iterations, whatever newton is",
+        description=f"iterate until every lock has converged, at most {MOST_ITERATIONS} times, whatever `newton` is",
     )
     substeps: int = Field(default=1, ge=1, le=1000, description="steps per frame")
     tolerance: float = Field(
-        default=1e-6, gt=0, le=1e-2, description="[m] a lock has converged when no vertex moves more than this"
+        default=1e-6, gt=0, le=1e-2, description="[m] a lock has converged when no vertex moves further than this"
     )
     system: Literal["automatic", "banded", "conjugate_gradient", "direct"] = Field(
         default="automatic",
-        description="how the linear system of locks that touch is solved: each alone (an error where something couples "
-        "them), together by conjugate gradients, or by factoring the whole; automatic: alone or together, as needed",
+        description="how the linear system of locks in contact is solved: each alone (an error where they are "
+        "coupled), together by conjugate gradients, or by factoring the whole; automatic: alone or "
+        "together, as needed",
     )
     linear_tolerance: float = Field(
         default=0.2,
         gt=0,
         le=0.5,
-        description="error of the linear system's solution that conjugate gradients leave, relative, in the norm of "
-        "energy; 0.02 for the last run",
+        description="relative error of the linear solution in the energy norm, with conjugate gradients; 0.02 for "
+        "the final run",
     )
     integrator: Literal["backward_euler", "bdf2"] = Field(
         default="backward_euler",
-        description="first order and calm, or second order (BDF-2), which keeps a swing going for longer",
+        description="`backward_euler`, first order, damps motion; `bdf2`, second order, keeps a swing going for longer",
     )
     continuation: Continuation = Field(
         default="material_frame",
-        description="how the signs of bends and the turns of twist are found: see the theory page",
+        description="rule for the signs of bends and the turns of twist: see the page on strands",
     )
     safeguards: tuple[Safeguard, ...] = Field(
-        default=SAFEGUARDS, description="those of `history` that are on; fewer only to study what each is for"
+        default=SAFEGUARDS, description="safeguards of `history` that are on; fewer only to study them"
     )
 
     @field_validator("safeguards")

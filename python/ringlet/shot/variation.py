@@ -36,9 +36,9 @@ Factor = Annotated[Mapped, Quantity("", 0.0, 1e6)]
 class Variation(Section):
     """Factors on the material of the strands, for each vertex of each lock."""
 
-    radius: Factor = Field(default=Mapped(), description="on `strands.radius`")
-    stretch: Factor = Field(default=Mapped(), description="on `strands.stretch_scale`")
-    bend: Factor = Field(default=Mapped(), description="on `strands.bend_scale`")
-    twist: Factor = Field(default=Mapped(), description="on `strands.twist_ratio`; their product goes up to 1")
-    damping: Factor = Field(default=Mapped(), description="on `strands.damping`")
-    seed: int = Field(default=1, ge=0, le=2**31, description="another seed, another chance for `vary` and `noise`")
+    radius: Factor = Field(default=Mapped(), description="factor on `strands.radius`")
+    stretch: Factor = Field(default=Mapped(), description="factor on `strands.stretch_scale`")
+    bend: Factor = Field(default=Mapped(), description="factor on `strands.bend_scale`")
+    twist: Factor = Field(default=Mapped(), description="factor on `strands.twist_ratio`; the product is at most 1")
+    damping: Factor = Field(default=Mapped(), description="factor on `strands.damping`")
+    seed: int = Field(default=1, ge=0, le=2**31, description="another seed gives `vary` and `noise` other values")

@@ -168,7 +168,7 @@ def _open_lock(folder: Path) -> BinaryIO:
 
 
 def _in_use(folder: Path) -> UserError:
-    return UserError(f"{folder}: is of a run that goes on; let it end, or choose another place")
+    return UserError(f"{folder}: belongs to a run in progress; let it end, or choose another place")
 
 
 def frames_between(vertices: int) -> int:

@@ -95,7 +95,7 @@ def _of_subset(mesh: Mesh, name: str, where: str) -> NDArray[np.bool_]:
     """The vertices of a region of a mesh, shape (n,)."""
     if name not in mesh.regions:
         hint = did_you_mean(name, mesh.regions) if mesh.regions else "; it has none"
-        raise UserError(f"{where}.subset is '{name}', which {mesh.name} has not{hint}")
+        raise UserError(f"{where}.subset is '{name}', which {mesh.name} does not have{hint}")
     inside = np.zeros(len(mesh.points), bool)
     inside[mesh.triangles[mesh.regions[name]]] = True
     return inside
@@ -105,7 +105,7 @@ def _of_map(mesh: Mesh, name: str, where: str) -> Array:
     """A painted value at each vertex, the largest of the corners that meet there, shape (n,)."""
     if name not in mesh.maps:
         hint = did_you_mean(name, mesh.maps) if mesh.maps else "; paint one as a primvar of floats"
-        raise UserError(f"{where}.map is '{name}', which {mesh.name} has not{hint}")
+        raise UserError(f"{where}.map is '{name}', which {mesh.name} does not have{hint}")
     values = np.zeros(len(mesh.points))
     np.maximum.at(values, mesh.triangles, mesh.maps[name])
     if not np.isfinite(mesh.maps[name]).all():

@@ -40,7 +40,7 @@ def override_pairs(friction: NDArray[np.float64], pairs: Sequence[Pair], names: 
         for place, name in enumerate(pair.between):
             if name not in names:
                 raise UserError(
-                    f"shot: contact.pair[{index}].between[{place}] is '{name}', which nothing is called"
+                    f"shot: contact.pair[{index}].between[{place}] is '{name}', which is no name in the shot"
                     f"{did_you_mean(name, dict.fromkeys(names))}"
                 )
         one, other = (np.flatnonzero(np.array(names) == name) for name in pair.between)

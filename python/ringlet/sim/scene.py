@@ -24,6 +24,14 @@ from ringlet.sim.obstacle import Body
 from ringlet.sim.strands import Strands
 from ringlet.sim.ties import Ties
 
+OTHERWISE = {
+    "radius",
+    "own_radius",
+    "friction",
+    "on",
+    "pair",
+    "separation_speed",
+}  # settings with other names in the core
 _OF_CLOTH = ("positions", "velocities")  # the state of a cloth
 
 
@@ -54,9 +62,8 @@ class Scene:
     ties: Ties | None = None
 
     def __post_init__(self) -> None:
-        settings = assign(
-            _core.SceneContact(), self.contact, without={"radius", "own_radius", "friction", "on", "pair"}
-        )
+        settings = assign(_core.SceneContact(), self.contact, without=OTHERWISE)
+        settings.parting_speed = self.contact.separation_speed
         settings.strand_radius = self.contact.radius
         if self.radii is not None:
             settings.strand_radii = np.asarray(self.radii, np.float64).tolist()

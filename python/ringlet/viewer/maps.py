@@ -16,7 +16,7 @@ Values = NDArray[np.floating]
 
 
 def picture_of(values: Values) -> bytes:
-    """A map as a PNG picture of 8 bits: black 0, white 1; directions in colors, as ``Texture.directions_at`` reads."""
+    """A map as a PNG picture of 8 bits: black 0, white 1; directions in colours, as ``Texture.directions_at`` reads."""
     data = io.BytesIO()
     levels = 128.0 + 127.0 * np.clip(values, -1.0, 1.0) if values.ndim == 3 else 255.0 * np.clip(values, 0.0, 1.0)
     Image.fromarray(np.rint(levels).astype(np.uint8)).save(data, "PNG")
@@ -30,7 +30,7 @@ def values_of(picture: bytes, *, directions: bool = False) -> Values:
     """
     texture = texture_of(picture)
     if directions and not texture.colored:
-        raise UserError("paint: the map of directions is no picture in colors; name another one, or none for a new one")
+        raise UserError("paint: the map of directions has no colours; name another one, or none for a new one")
     return (texture.directions_at if directions else texture.at)(*np.indices(texture.shape)).astype(np.float32)
 
 

@@ -133,7 +133,7 @@ class Playback:
         else:
             shot = self._files.shot
             if self._stage is None:
-                raise UserError("shot: its groom is not made yet; wait until it is seen")
+                raise UserError("shot: its groom is still being made; wait until it is shown")
             restart_frame = message.frame if message.action == "again_from" else None
             self._viewport.show_bodies(shot, self._stage.groom)
             self._stage.bodies = self._viewport.bodies
@@ -194,7 +194,7 @@ class Playback:
         elif message.name:
             stage, display = self._stage, self._viewport.display
             if stage is None or display is None:
-                raise UserError("shot: its groom is not made yet; wait until it is seen")
+                raise UserError("shot: its groom is still being made; wait until it is shown")
             file = self._files.project.inside(message.name, "against")
             self._compared_frames.open(file, display, partial(stage.frame, "against"))
             self._against = message.name

@@ -35,7 +35,7 @@ class Rendering:
         """Begins a render for a page in place of its last one; raises UserError before the groom is made."""
         self.cancel(page)
         if viewport.display is None:
-            raise UserError("render: the groom is not made yet; wait until it is seen")
+            raise UserError("render: the groom is still being made; wait until it is shown")
         settings = PictureSettings(
             width=message.width,
             height=message.height,

@@ -163,7 +163,7 @@ def open_frames(file: Path, display: DisplayGroom) -> Iterator[tuple[np.ndarray,
     with io.open_cache(file) as cache:
         locks = display.groom.locks
         if cache.size != len(locks.points) or not np.array_equal(cache.ids, locks.ids):
-            raise UserError(f"{file.name}: is of another groom than that of the shot; choose a cache of the same groom")
+            raise UserError(f"{file.name}: belongs to another groom than the shot; choose a cache of the same groom")
         statistics = dict(zip(cache.frames.tolist(), cache.statistics, strict=False))
         yield (
             cache.frames,

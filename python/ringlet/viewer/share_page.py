@@ -107,7 +107,7 @@ def make_page(
     """
     messages = {subject: data for subject, data in retained.items() if subject.startswith(SHARED)}
     if "a/hairs" not in messages:
-        raise UserError("share: the groom is not made yet; wait until it is seen")
+        raise UserError("share: the groom is still being made; wait until it is shown")
     of = split(messages["a/hairs"])[0]["count"]
 
     def page(kept: int) -> SharePage:

@@ -62,7 +62,7 @@ class Simulation:
         if restart_frame is not None:
             earlier = [frame for frame in self._checkpoints if frame <= restart_frame]
             if not earlier:
-                raise UserError(f"shot: frame {restart_frame} cannot be gone on from; run it from its start")
+                raise UserError(f"shot: the run cannot continue from frame {restart_frame}; run it from its start")
             restart_frame = max(earlier)
             checkpoint = self._checkpoints[restart_frame]
             self._checkpoints = {frame: kept for frame, kept in self._checkpoints.items() if frame <= restart_frame}

@@ -107,7 +107,9 @@ def _current_value(model: Any, name: str) -> Any:
         table = value.model_dump(mode="json", exclude_defaults=True)
         return {**table, "value": f"{table['value']!r} m"} if length and "value" in table else table
     if value is None:
-        raise UserError(f"{name} cannot be taken out")  # TOML has no null
+        raise UserError(
+            f"save: {name} cannot be removed in a variant; save a copy in place of a variant"
+        )  # TOML has no null
     return f"{value!r} m" if length and isinstance(value, float) else value
 
 

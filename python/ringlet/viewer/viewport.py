@@ -44,7 +44,7 @@ class Viewport:
     def made(self, what: str) -> DisplayGroom:
         """The displayed groom; raises UserError before it is made, in the name of what needs it."""
         if self.display is None:
-            raise UserError(f"{what}: the groom is not made yet; wait until it is seen")
+            raise UserError(f"{what}: the groom is still being made; wait until it is shown")
         return self.display
 
     @property

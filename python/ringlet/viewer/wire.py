@@ -63,7 +63,7 @@ def unpack(data: bytes) -> FromPage:
     if len(data) > MOST:
         raise UserError(f"message: has {len(data)} bytes; must be at most {MOST}")
     if len(data) < 4 or len(data) != 4 + struct.unpack_from("<I", data)[0]:
-        raise UserError("message: its length is not what it says; send it again")
+        raise UserError("message: its length is not the one it states; send it again")
     try:
         return FROM_PAGE.validate_json(data[4:], strict=True)
     except ValidationError as error:

@@ -23,7 +23,6 @@ from ringlet.groom.operators.length import Length
 from ringlet.groom.operators.lift import Lift
 from ringlet.groom.operators.loc import Loc
 from ringlet.groom.operators.locks import Locks
-from ringlet.groom.operators.loft import Loft
 from ringlet.groom.operators.noise import Noise
 from ringlet.groom.operators.operator import Context, Operator
 from ringlet.groom.operators.part import Part
@@ -34,13 +33,14 @@ from ringlet.groom.operators.smooth import Smooth
 from ringlet.groom.operators.straighten import Straighten
 from ringlet.groom.operators.tie import Tie
 from ringlet.groom.operators.twist import Twist
+from ringlet.groom.operators.volume import Volume
 
 ShapeOperator = Annotated[
     Resample
     | Smooth
     | Length
     | Lift
-    | Loft
+    | Volume
     | Bend
     | Scraggle
     | Noise
@@ -83,7 +83,6 @@ __all__ = [
     "Lift",
     "Loc",
     "Locks",
-    "Loft",
     "Noise",
     "Operator",
     "Part",
@@ -95,4 +94,5 @@ __all__ = [
     "Straighten",
     "Tie",
     "Twist",
+    "Volume",
 ]

@@ -18,15 +18,17 @@ from ringlet.groom.operators.shape import Shape
 
 class Attract(Shape):
     """Attracts each lock to the helper curve with the nearest root:
-    ``p' = p + amount · ramp(u) · falloff · (curve(u) - p)``. It goes from 1 to 0 over ``falloff``."""
+    ``p' = p + amount · ramp(u) · falloff · (curve(u) - p)``. The falloff goes from 1 at the root of
+    the curve to 0 at the distance ``falloff`` from it."""
 
     op: Literal["attract"] = "attract"
     curve: str = Field(min_length=1, description="name of the helper curves, from `[curves]`")
     amount: Annotated[Ramped, Quantity("", 0.0, 1.0, product=False)] = Field(
-        default=Ramped(value=0.5, ramp=[(0, 0), (1, 1)]), description="0 leaves the shape, 1 puts it on the curve"
+        default=Ramped(value=0.5, ramp=[(0, 0), (1, 1)]), description="0 keeps the shape, 1 moves it onto the curve"
     )
     falloff: Annotated[float | None, Quantity("m", 1e-4, 10.0)] = Field(
-        default=None, description="locks farther from the root of the curve than this stay; all come when absent"
+        default=None,
+        description="distance from the root of the curve beyond which locks stay; all are attracted when absent",
     )
 
     def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:

@@ -21,11 +21,12 @@ class Bend(Shape):
 
     op: Literal["bend"] = "bend"
     angle: Annotated[Ramped, Quantity("deg", -1000.0, 1000.0, product=False)] = Field(
-        default=Ramped(value=45.0), description="how far the tip is turned"
+        default=Ramped(value=45.0), description="rotation of the tip"
     )
-    toward: Direction = Field(default=(0.0, -1.0, 0.0), description="direction that it bends to, Y up")
+    toward: Direction = Field(default=(0.0, -1.0, 0.0), description="direction of the bend, Y up")
     of: Literal["world", "scalp"] = Field(
-        default="world", description="scalp: `toward` counts in tangent, bitangent and normal of the root"
+        default="world",
+        description="axes of `toward`: those of the world, or the tangent, bitangent and normal of the root",
     )
 
     turns: ClassVar[bool] = True

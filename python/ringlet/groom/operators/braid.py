@@ -23,7 +23,7 @@ class Braid(Woven):
     op: Literal["braid"] = "braid"
     pattern: Literal["over", "under", "fishtail", "rope"] = Field(default="over", description="how strands cross")
     flatness: Annotated[float, Quantity("", 0.0, 0.9)] = Field(
-        default=0.33, description="0: as deep as wide; more: flatter"
+        default=0.33, description="0: as deep as wide; larger: flatter"
     )
 
     @property

@@ -23,14 +23,17 @@ class Clump(Shape):
     lock."""
 
     op: Literal["clump"] = "clump"
-    size: Annotated[float, Quantity("m", 1e-3, 1.0)] = Field(default=0.02, description="distance of the clumps")
+    size: Annotated[float, Quantity("m", 1e-3, 1.0)] = Field(
+        default=0.02, description="distance between clump centres; larger gives fewer, thicker clumps"
+    )
     tightness: Annotated[Ramped, Quantity("", 0.0, 1.0, product=False)] = Field(
-        default=Ramped(value=0.4, vary=0.5, ramp=[(0, 0), (1, 1)]), description="0 apart, 1 all at the centre"
+        default=Ramped(value=0.4, vary=0.5, ramp=[(0, 0), (1, 1)]),
+        description="how far locks move to the centre of their clump: 0 not, 1 onto it",
     )
 
-    levels: int = Field(default=1, ge=1, le=8, description="clumps within clumps")
+    levels: int = Field(default=1, ge=1, le=8, description="number of levels of clumps within clumps")
     finer: Annotated[float, Quantity("", 0.1, 0.9)] = Field(
-        default=0.5, description="distance of the clumps of a level, as a part of that of the level before"
+        default=0.5, description="distance between the clumps of a level, relative to the level before"
     )
     apart: Apart = 60.0
 

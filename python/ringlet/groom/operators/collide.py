@@ -22,7 +22,7 @@ class Collide(Operator):
     their tails are moved."""
 
     margin: Annotated[float, Quantity("m", 0.0, 0.1)] = Field(
-        default=0.002, description="distance that locks keep from skin and clothes"
+        default=0.002, description="smallest distance of locks from skin and clothes"
     )
 
     def apply(self, curves: Curves, context: Context) -> Curves:

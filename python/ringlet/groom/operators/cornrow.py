@@ -49,13 +49,13 @@ class Cornrow(Woven):
         default=Varied(value=0.006), description="length along the row between where hair grows and where it joins"
     )
     off: Annotated[Varied, Quantity("m", 0.0, 1.0)] = Field(
-        default=Varied(value=0.0), description="length at the back of the row where the braid is off the scalp already"
+        default=Varied(value=0.0), description="length at the back of the row over which the braid has left the scalp"
     )
     length: Annotated[Varied, Quantity("m", 1e-3, 2.0)] = Field(
         default=Varied(value=0.08), description="length of the tail"
     )
     gravity_bend: Annotated[Varied, Quantity("", 0.0, 10.0)] = Field(
-        default=Varied(value=2.0), description="how much the tail hangs down"
+        default=Varied(value=2.0), description="how strongly the tail bends down: 0 straight, larger hangs more steeply"
     )
 
     @property

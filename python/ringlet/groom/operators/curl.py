@@ -45,13 +45,13 @@ class Curl(Operator):
         default=Ramped(value=0.008), description="diameter of the curl"
     )
     pitch: Annotated[Ramped | None, Quantity("m", 5e-4, 1.0)] = Field(
-        default=None, description="rise per curl, along the shape"
+        default=None, description="rise per turn, along the shape"
     )
     curls: Annotated[Ramped | None, Quantity("", 0.0, 500.0, product=False)] = Field(
-        default=None, description="number of curls of a lock; its ramp says where they are closer"
+        default=None, description="number of turns of a lock; its ramp says where they are closer"
     )
     curls_per_cm: Annotated[Ramped | None, Quantity("", 0.0, 20.0)] = Field(
-        default=None, description="number of curls per centimetre of shape"
+        default=None, description="number of turns per centimetre of the shape"
     )
     start: Annotated[Varied, Quantity("m", 0.0, 1.0)] = Field(
         default=Varied(value=0.01), description="length at the root over which the curl opens"
@@ -70,37 +70,37 @@ class Curl(Operator):
         description="how much narrower the curl gets: 1 to nothing, -1 to double; the ramp says where",
     )
     right_handed: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
-        default=Varied(value=0.5), description="part of the locks that wind right-handed: 1 all, 0 none"
+        default=Varied(value=0.5), description="fraction of the locks that wind right-handed"
     )
     switchbacks: Annotated[Varied, Quantity("", 0.0, 5.0)] = Field(
-        default=Varied(value=0.0), description="changes of hand per lock, on average"
+        default=Varied(value=0.0), description="changes of handedness per lock, on average"
     )
     skips: Annotated[Varied, Quantity("", 0.0, 5.0)] = Field(
-        default=Varied(value=0.0), description="turns that a lock leaves out here and there, on average"
+        default=Varied(value=0.0), description="turns that a lock leaves out, on average"
     )
     phase: Annotated[Varied, Quantity("deg", -360.0, 360.0)] = Field(
-        default=Varied(value=0.0), description="where the curl starts"
+        default=Varied(value=0.0), description="angle at which the curl starts"
     )
     phase_spread: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
-        default=Varied(value=1.0), description="0: all start alike, 1: anywhere"
+        default=Varied(value=1.0), description="scatter of phases: 0 all locks start alike, 1 anywhere"
     )
     phase_coherence: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
-        default=Varied(value=0.0), description="how much of that spread neighbours share: 0 nothing, 1 all"
+        default=Varied(value=0.0), description="fraction of that scatter that neighbours share"
     )
     phase_wavelength: Annotated[float, Quantity("m", 1e-3, 1.0)] = Field(
-        default=0.03, description="distance over which neighbours forget one another's phase"
+        default=0.03, description="distance over which the phases of neighbours become independent"
     )
     phase_groups: PhaseGroups | None = Field(
-        default=None, description="neighbours whose curls fall in with one another"
+        default=None, description="groups of neighbouring curls in phase; none when absent"
     )
     irregularity: Annotated[Varied, Quantity("", 0.0, 0.9)] = Field(
-        default=Varied(value=0.2), description="how much width and pitch wander along a lock"
+        default=Varied(value=0.2), description="how much width and pitch vary along a lock: 0 is even"
     )
     flatness: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
-        default=Varied(value=0.0), description="0 a round curl, between an ellipse, 1 a flat wave"
+        default=Varied(value=0.0), description="cross-section of the curl: 0 round, 1 a flat wave"
     )
     kink: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
-        default=Varied(value=0.0), description="0 a coil, 1 a zigzag whose plane sways with the irregularity"
+        default=Varied(value=0.0), description="0 a coil, 1 a zigzag whose plane varies with the irregularity"
     )
     wave: Annotated[Ramped, Quantity("m", 0.0, 0.2)] = Field(
         default=Ramped(value=0.0),
@@ -109,7 +109,9 @@ class Curl(Operator):
     wave_pitch: Annotated[Varied, Quantity("m", 1e-3, 1.0)] = Field(
         default=Varied(value=0.04), description="length of one such wave"
     )
-    keep: Literal["silhouette", "length"] = Field(default="silhouette", description="what the curl does not change")
+    keep: Literal["silhouette", "length"] = Field(
+        default="silhouette", description="what the curl preserves: the silhouette, or the length of the hair"
+    )
 
     @field_validator("opening", "closing")
     @classmethod

@@ -18,15 +18,15 @@ class Drawn(Source, Guides):
 
     file: str = Field(
         min_length=1,
-        description="USD, .abc, .obj, .hair or .tfx file with the curves, beside the recipe or with a full path",
+        description="USD, .abc, .obj, .hair or .tfx file with the curves, next to the recipe or with a full path",
     )
     prim: str | None = Field(default=None, description="prim of the curves; needed when the file has several")
     tolerance: Annotated[float, Quantity("m", 0.0, 1.0)] = Field(
-        default=0.01, description="how far a root may be off the scalp"
+        default=0.01, description="largest distance of a root from the scalp"
     )
 
     residual: Annotated[float, Quantity("", 0.0, 1.0)] = Field(
-        default=1.0, description="part that is kept of what the curl does not fit, of guides that were adopted"
+        default=1.0, description="of adopted guides, the fraction kept of what their fitted curl does not explain"
     )
 
     def make(self, curves: Curves, context: Context) -> Curves:

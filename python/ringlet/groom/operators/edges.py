@@ -39,39 +39,41 @@ class Edges(Shape):
         default=Varied(value=0.008), description="distance from the border up to which locks are laid"
     )
     share: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
-        default=Varied(value=1.0), description="part of the locks that are laid at the border, less farther from it"
+        default=Varied(value=1.0), description="fraction of the locks at the border that are laid; fewer further away"
     )
     length: Annotated[Varied, Quantity("m", 1e-3, 0.5)] = Field(
         default=Varied(value=0.025, vary=0.2), description="length of laid locks before they come together"
     )
     direction: Annotated[Varied, Quantity("deg", -360.0, 360.0)] = Field(
-        default=Varied(value=30.0), description="0: straight out of the scalp, 90: along the border, more: back into it"
+        default=Varied(value=30.0),
+        description="angle at the root: 0 straight out of the scalp, 90 along the border, more turns back into it",
     )
     swoop: Annotated[Ramped, Quantity("deg", -1080.0, 1080.0)] = Field(
         default=Ramped(value=130.0, ramp=[(0, 0), (0.3, 0.15), (1, 1)]),
         description="angle by which a lock turns to its tip; its ramp says where",
     )
     wave: Annotated[Ramped, Quantity("deg", 0.0, 180.0)] = Field(
-        default=Ramped(value=0.0), description="angle of waves to both sides"
+        default=Ramped(value=0.0), description="amplitude of waves, as an angle to both sides"
     )
     wavelength: Annotated[Varied, Quantity("m", 2e-3, 1.0)] = Field(
         default=Varied(value=0.015), description="length of a wave"
     )
     size: Annotated[float, Quantity("m", 1e-3, 0.5)] = Field(
-        default=0.018, description="distance of swoops along the border"
+        default=0.018, description="distance between swoops along the border"
     )
     tightness: Annotated[Ramped, Quantity("", 0.0, 1.0, product=False)] = Field(
         default=Ramped(value=0.85, ramp=[(0, 0), (0.5, 0.6), (1, 1)]),
         description="how far locks of a swoop come together: 0 not, 1 in one line",
     )
     alternate: Annotated[float, Quantity("m", 0.0, 1.0)] = Field(
-        default=0.0, description="distance over which swoops change sides, softly; 0: all away from the middle"
+        default=0.0,
+        description="distance along the border over which swoops change sides; 0: all turn away from the middle",
     )
     width: Annotated[Varied, Quantity("m", 1e-4, 0.01)] = Field(
         default=Varied(value=0.0008), description="thickness of a laid lock"
     )
     height: Annotated[Varied, Quantity("m", 1e-4, 0.02)] = Field(
-        default=Varied(value=0.0015), description="height above the skin that locks stay under, at least their width"
+        default=Varied(value=0.0015), description="largest height of locks above the skin; at least their width"
     )
 
     def apply(self, curves: Curves, context: Context) -> Curves:

@@ -31,11 +31,11 @@ class Ended(Sectioned):
 
     end: Literal["loose", "tied", "bead", "burnt"] = Field(
         default="tied",
-        description="what holds the strands before the tail: nothing, a band, or beads in its place; burnt: they are "
-        "sealed to a tip, without a tail",
+        description="what holds the strands before the tail: nothing, a band, or beads in its place; burnt: they "
+        "are sealed to a tip, without a tail",
     )
     tail: Annotated[Varied, Quantity("m", 0.0, 1.0)] = Field(
-        default=Varied(value=0.02), description="length at the tip that is not woven"
+        default=Varied(value=0.02), description="length at the tip that is left unwoven"
     )
     tie: Annotated[Varied, Quantity("m", 0.0, 0.1)] = Field(
         default=Varied(value=0.004),
@@ -43,7 +43,8 @@ class Ended(Sectioned):
         "sealed: they stay together there in a shot",
     )
     band: Annotated[Varied, Quantity("m", 0.0, 0.02)] = Field(
-        default=Varied(value=0.0), description="thickness of the band, a mesh that the strands carry; 0: none is seen"
+        default=Varied(value=0.0),
+        description="thickness of the band, a mesh that the strands carry; 0: it is not shown",
     )
     bead: Annotated[Varied, Quantity("m", 1e-3, 0.1)] = Field(
         default=Varied(value=0.01), description="width of a bead; strands are narrowed to its hole, half as wide"
@@ -52,14 +53,14 @@ class Ended(Sectioned):
         default=Varied(value=0.008), description="length of a bead along the strands"
     )
     beads: Annotated[Varied, Quantity("", 1.0, 20.0)] = Field(
-        default=Varied(value=1.0), description="number of beads of a section"
+        default=Varied(value=1.0), description="number of beads per section"
     )
     density: Annotated[Varied, Quantity("kg/m³", 0.0, 2e4)] = Field(
         default=Varied(value=1000.0),
-        description="of bands and beads: wood 700, plastic and rubber 1000, glass 2500, brass 8500",
+        description="density of bands and beads: wood 700, plastic and rubber 1000, glass 2500, brass 8500",
     )
     colors: list[Color] = Field(
-        default=[], description="colours of bands and beads, in sRGB: `#rrggbb`; each has one of them by chance"
+        default=[], description="colours of bands and beads, in sRGB: `#rrggbb`; each gets one of them at random"
     )
 
     def ends(

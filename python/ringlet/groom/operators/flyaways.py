@@ -19,9 +19,11 @@ class Flyaways(Shape):
     across each lock."""
 
     op: Literal["flyaways"] = "flyaways"
-    share: Annotated[float, Quantity("", 0.0, 1.0)] = Field(default=0.05, description="part of the locks that fly away")
+    share: Annotated[float, Quantity("", 0.0, 1.0)] = Field(
+        default=0.05, description="fraction of the locks that fly away"
+    )
     angle: Annotated[Ramped, Quantity("deg", 0.0, 180.0)] = Field(
-        default=Ramped(value=30.0, vary=0.5, ramp=[(0, 0), (0.3, 0.5), (1, 1)]), description="how far they are turned"
+        default=Ramped(value=30.0, vary=0.5, ramp=[(0, 0), (0.3, 0.5), (1, 1)]), description="rotation of the tip"
     )
 
     turns: ClassVar[bool] = True

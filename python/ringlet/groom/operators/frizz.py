@@ -22,9 +22,12 @@ class Frizz(Displacement):
 
     op: Literal["frizz"] = "frizz"
     magnitude: Annotated[Ramped, Quantity("m", 0.0, 0.1)] = Field(
-        default=Ramped(value=0.001, ramp=[(0, 0), (0.2, 1), (1, 1)]), description="how far it goes (deviation)"
+        default=Ramped(value=0.001, ramp=[(0, 0), (0.2, 1), (1, 1)]),
+        description="standard deviation of the displacement; larger is fuzzier",
     )
-    wavelength: Annotated[float, Quantity("m", 5e-4, 1.0)] = Field(default=0.008, description="length of its waves")
+    wavelength: Annotated[float, Quantity("m", 5e-4, 1.0)] = Field(
+        default=0.008, description="length of the waves along the lock; shorter is rougher"
+    )
 
     def displaced(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
         """Returns the shapes with frizz; roots stay.

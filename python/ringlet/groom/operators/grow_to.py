@@ -23,7 +23,7 @@ class GrowTo(ToTarget):
 
     op: Literal["grow_to"] = "grow_to"
     most: Annotated[Varied, Quantity("m", 1e-3, 10.0)] = Field(
-        default=Varied(value=0.5), description="length up to which locks grow"
+        default=Varied(value=0.5), description="largest length that locks grow to"
     )
 
     def path(self, points: NDArray, curves: Curves, context: Context) -> tuple[NDArray, NDArray]:

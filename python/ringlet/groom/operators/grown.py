@@ -33,7 +33,7 @@ class Zone(Section):
     angle: Annotated[float, Quantity("deg", 1.0, 180.0)] = Field(
         default=40.0, description="half the opening angle of the zone"
     )
-    mask: Annotated[Mask | None, Quantity("", 0.0, 1.0)] = Field(default=None, description="where it is")
+    mask: Annotated[Mask | None, Quantity("", 0.0, 1.0)] = Field(default=None, description="where the zone is")
     length: Annotated[float, Quantity("", 0.0, 10.0)] = Field(default=1.0, description="factor on the length")
     lift: Annotated[float, Quantity("", 0.0, 10.0)] = Field(default=1.0, description="factor on the lift")
     gravity_bend: Annotated[float, Quantity("", 0.0, 10.0)] = Field(
@@ -70,24 +70,26 @@ class Grown(Guides):
     points away from the whorl.
     """
 
-    count: int | None = Field(default=None, ge=1, le=1_000_000, description="number of guides (this or spacing)")
-    spacing: Annotated[float | None, Quantity("m", 1e-4, 1.0)] = Field(default=None, description="distance of guides")
+    count: int | None = Field(default=None, ge=1, le=1_000_000, description="number of guides; give this or `spacing`")
+    spacing: Annotated[float | None, Quantity("m", 1e-4, 1.0)] = Field(
+        default=None, description="distance between guides"
+    )
     points: int = Field(default=10, ge=3, le=1000, description="points of a guide")
     length: Annotated[Varied, Quantity("m", 1e-4, 10.0)] = Field(
-        default=Varied(value=0.08), description="length of a guide"
+        default=Varied(value=0.08), description="length of a guide, curl excluded"
     )
     lift: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
-        default=Varied(value=0.8), description="1 stands up, 0 lies flat"
+        default=Varied(value=0.8), description="direction at the root: 1 stands up, 0 lies flat along the flow"
     )
     gravity_bend: Annotated[Varied, Quantity("", 0.0, 30.0)] = Field(
-        default=Varied(value=0.4), description="how much the tip hangs down"
+        default=Varied(value=0.4), description="how strongly the tip bends down: 0 straight, larger hangs more steeply"
     )
     whorl: Annotated[Direction | None, BeforeValidator(lambda value: None if value is False else value)] = Field(
         default=(0.0, 1.0, -0.6),
         description="direction of the crown from the middle of the scalp; the flow runs away from it; false: no whorl",
     )
     whorl_turn: Annotated[float, Quantity("deg", -180.0, 180.0)] = Field(
-        default=25.0, description="how much the flow spirals about the whorl"
+        default=25.0, description="how far the flow spirals about the whorl"
     )
     flow: Direction = Field(default=(0.0, -1.0, 0.0), description="direction of the flow where there is no whorl")
     density: str | None = Field(
@@ -96,15 +98,15 @@ class Grown(Guides):
     )
     direction: str | None = Field(
         default=None,
-        description="painted directions, a primvar of vectors or a picture of [maps] in colors, that replace the flow "
-        "where they are not 0",
+        description="painted directions, a primvar of vectors or a picture of [maps] in colours, that replace the "
+        "flow where they are not 0",
     )
     drawn: list[str] = Field(
         default=[],
-        description="helper curves that are guides as they are drawn, from root to tip, besides those that grow",
+        description="names of helper curves that are guides themselves, from root to tip, besides those that grow",
     )
-    part_line: PartLine | None = Field(default=None, description="a part line; none when absent")
-    zone: list[Zone] = Field(default=[], description="parts of the head with their own length and stand")
+    part_line: PartLine | None = Field(default=None, description="where hair parts; nowhere when absent")
+    zone: list[Zone] = Field(default=[], description="zones of the head with their own length, lift and gravity bend")
 
     @model_validator(mode="after")
     def _one_density(self) -> Grown:

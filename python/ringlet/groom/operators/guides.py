@@ -17,9 +17,9 @@ from ringlet.groom.operators.operator import Context, Operator, packed
 class Guides(Operator):
     """Makes guides, mirrors them and resamples them."""
 
-    mirror: Mirror | None = Field(default=None, description="the guides of one side on the other, too")
+    mirror: Mirror | None = Field(default=None, description="mirrors the guides of one side to the other")
     segment: Annotated[float | None, Quantity("m", 1e-4, 1.0)] = Field(
-        default=None, description="length of the pieces that guides are cut into: longer ones get more points"
+        default=None, description="distance between the points of a guide, so that longer guides have more points"
     )
 
     def make(self, curves: Curves, context: Context) -> Curves:

@@ -37,16 +37,16 @@ class Knot(Sectioned):
         default=Varied(value=0.024), description="height of the knot"
     )
     windings: Annotated[Varied, Quantity("", 1.0, 12.0)] = Field(
-        default=Varied(value=3.0), description="how often the rope is wound around its base"
+        default=Varied(value=3.0), description="number of windings of the rope around its base"
     )
     dome: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
         default=Varied(value=0.6), description="0: windings lie on a cone, 1: on a dome"
     )
     tuck: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
-        default=Varied(value=1.0), description="0 leaves the end outside, 1 leads it under as far as there is room"
+        default=Varied(value=1.0), description="0 leaves the end outside, 1 tucks it under as far as there is space"
     )
     tightness: Annotated[Varied, Quantity("", 0.05, 1.0)] = Field(
-        default=Varied(value=1.0), description="1: windings touch; less: the rope is thinner on the same path"
+        default=Varied(value=1.0), description="1: windings touch; smaller: the rope is thinner on the same path"
     )
     pitch: Annotated[Varied | None, Quantity("m", 1e-3, 1.0)] = Field(
         default=None, description="length of a turn of twisted strands; two thicknesses of the rope when absent"
@@ -55,7 +55,7 @@ class Knot(Sectioned):
         default=Varied(value=0.005), description="length over which the strands come together"
     )
     right_handed: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
-        default=Varied(value=1.0), description="part of the sections that are wound right-handed: 1 all, 0 none"
+        default=Varied(value=1.0), description="fraction of the sections that are wound right-handed"
     )
 
     def strands(

@@ -23,9 +23,9 @@ class Length(Shape):
         default=Varied(value=1.0), description="factor on the length"
     )
     to: Annotated[Varied | None, Quantity("m", 1e-4, 10.0)] = Field(
-        default=None, description="the length that all have before the factor; their own when absent"
+        default=None, description="length that all locks get before the factor; their own when absent"
     )
-    cut: bool = Field(default=False, description="cut what is too long; the rest keeps its place")
+    cut: bool = Field(default=False, description="cut longer locks, in place of scaling all")
 
     def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
         """Returns the scaled or cut shapes; roots stay."""

@@ -20,7 +20,7 @@ class Lift(Shape):
 
     op: Literal["lift"] = "lift"
     angle: Annotated[Ramped, Quantity("deg", -180.0, 180.0)] = Field(
-        default=Ramped(value=20.0), description="how far it is turned"
+        default=Ramped(value=20.0), description="rotation about the root, towards the normal of the scalp"
     )
 
     turns: ClassVar[bool] = True

@@ -25,14 +25,14 @@ class Loc(Shape):
 
     op: Literal["loc"] = "loc"
     radius: Annotated[Ramped, Quantity("m", 1e-4, 0.05)] = Field(
-        default=Ramped(value=0.003), description="radius; that of contact is its value without the ramp"
+        default=Ramped(value=0.003), description="radius of a loc; contact uses it without the ramp"
     )
     taper: Annotated[Varied, Quantity("", -1.0, 1.0)] = Field(
         default=Varied(value=0.15), description="how much thinner it is at the tip: 1 to nothing, -1 twice as thick"
     )
     matting: Annotated[Ramped, Quantity("", 0.0, 1.0)] = Field(
         default=Ramped(value=0.9, ramp=[(0, 0.2), (0.15, 1), (1, 1)]),
-        description="0: hairs run side by side, 1: each wanders through the loc; the ramp leaves new growth loose",
+        description="0: hairs run side by side, 1: each wanders through the loc; a ramp leaves new growth loose",
     )
     fuzz: Annotated[Ramped, Quantity("m", 0.0, 0.05)] = Field(
         default=Ramped(value=0.0012), description="how far loose hairs stand off the surface"
@@ -48,7 +48,7 @@ class Loc(Shape):
     )
     tip: Annotated[Varied, Quantity("m", 0.0, 0.5)] = Field(
         default=Varied(value=0.003),
-        description="length over which the tip closes: the radius is round, more thin",
+        description="length over which the tip closes: as long as the radius a round tip, longer a pointed one",
     )
 
     start: Annotated[Varied, Quantity("m", 0.0, 0.5)] = Field(

@@ -32,8 +32,10 @@ class Locks(Operator):
     ``apart``, as across a part line, have weight 0.
     """
 
-    count: int | None = Field(default=None, ge=1, le=1_000_000, description="number of locks (this or spacing)")
-    spacing: Annotated[float | None, Quantity("m", 1e-4, 1.0)] = Field(default=None, description="distance of locks")
+    count: int | None = Field(default=None, ge=1, le=1_000_000, description="number of locks; give this or `spacing`")
+    spacing: Annotated[float | None, Quantity("m", 1e-4, 1.0)] = Field(
+        default=None, description="distance between locks"
+    )
     density: str | None = Field(
         default=None,
         description="painted values: where they are higher, locks stand closer; none grow where they are 0",
@@ -42,21 +44,21 @@ class Locks(Operator):
         default=64,
         ge=4,
         le=limits.POINTS,
-        description="points of a groom guide, curl included; 12 a curl simulate well",
+        description="points of a lock, curl included; about 12 per turn simulate well",
     )
     shape_points: int = Field(default=20, ge=4, le=1000, description="points of a lock's shape, before it is curled")
-    neighbours: int = Field(default=4, ge=1, le=16, description="guides that a lock takes its shape from")
+    neighbours: int = Field(default=4, ge=1, le=16, description="number of guides that a lock takes its shape from")
 
     apart: Annotated[float, Quantity("deg", 1.0, 180.0)] = Field(
-        default=60.0, description="guides that lean further apart than this are not mixed"
+        default=60.0, description="guides that lean further apart than this, as across a part line, are not mixed"
     )
 
     sections: Sections | None = Field(
-        default=None, description="parts of the scalp between part lines, for braids and twists; none when absent"
+        default=None, description="sections of the scalp between part lines, for braids and twists; none when absent"
     )
 
     hairline: Hairline | None = Field(
-        default=None, description="a soft hairline along the border of the scalp; a hard edge when absent"
+        default=None, description="softer hair along the border of the scalp; a hard edge when absent"
     )
 
     @model_validator(mode="after")

@@ -25,10 +25,10 @@ class Mirror(Section):
         "head that faces +z",
     )
     seam: Annotated[float, Quantity("m", 0.0, 0.1)] = Field(
-        default=0.002, description="guides with a root nearer to the plane than this are on it"
+        default=0.002, description="guides with a root closer to the plane than this are on it"
     )
     tolerance: Annotated[float, Quantity("m", 0.0, 1.0)] = Field(
-        default=0.01, description="how far the image of a root may be off the scalp; it is moved onto it"
+        default=0.01, description="largest distance of the image of a root from the scalp, onto which it is moved"
     )
 
     def both_sides(self, guides: Curves, context: Context) -> Curves:

@@ -20,10 +20,11 @@ class Noise(Displacement):
 
     op: Literal["noise"] = "noise"
     magnitude: Annotated[Ramped, Quantity("m", 0.0, 1.0)] = Field(
-        default=Ramped(value=0.005, ramp=[(0, 0), (1, 1)]), description="how far the field reaches"
+        default=Ramped(value=0.005, ramp=[(0, 0), (1, 1)]),
+        description="amplitude of the field; larger moves locks further",
     )
     wavelength: Annotated[float, Quantity("m", 1e-3, 10.0)] = Field(
-        default=0.05, description="distance over which the field changes"
+        default=0.05, description="distance in space over which the field changes; neighbours within it move together"
     )
 
     def displaced(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:

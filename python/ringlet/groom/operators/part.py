@@ -21,9 +21,10 @@ class Part(Shape):
     ``part_line.falloff`` of distance."""
 
     op: Literal["part"] = "part"
-    part_line: PartLine = Field(default=PartLine(), description="where it is")
+    part_line: PartLine = Field(default=PartLine(), description="where hair parts")
     amount: Annotated[Ramped, Quantity("", 0.0, 10.0)] = Field(
-        default=Ramped(value=1.0, ramp=[(0, 1), (1, 0.3)]), description="how much beside it: 0 leaves the shape"
+        default=Ramped(value=1.0, ramp=[(0, 1), (1, 0.3)]),
+        description="strength at the part line: 0 keeps the shape, larger turns hair further to its side",
     )
 
     turns: ClassVar[bool] = True

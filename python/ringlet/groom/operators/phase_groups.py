@@ -18,15 +18,16 @@ class PhaseGroups(Section):
     """Groups of neighbouring curls in phase: from the root on, phase and width of a lock blend into those of the
     central lock of its group."""
 
-    size: Annotated[float, Quantity("m", 1e-3, 1.0)] = Field(default=0.01, description="distance of the groups")
+    size: Annotated[float, Quantity("m", 1e-3, 1.0)] = Field(default=0.01, description="distance between groups")
     amount: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
-        default=Varied(value=1.0), description="how far they do: 0 not at all, 1 wholly"
+        default=Varied(value=1.0), description="how far phase and width agree within a group: 0 not, 1 wholly"
     )
     length: Annotated[Varied, Quantity("m", 0.0, 10.0)] = Field(
-        default=Varied(value=0.03), description="length from the root over which they do"
+        default=Varied(value=0.03), description="length from the root over which they come to agree"
     )
     cohesion: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
-        default=Varied(value=0.3), description="how far their middle lines are drawn together as well"
+        default=Varied(value=0.3),
+        description="how far the centre lines of a group are drawn together: 0 not, 1 into one",
     )
     apart: Apart = 60.0
 

@@ -21,10 +21,11 @@ class Scraggle(Displacement):
 
     op: Literal["scraggle"] = "scraggle"
     magnitude: Annotated[Ramped, Quantity("m", 0.0, 1.0)] = Field(
-        default=Ramped(value=0.005, ramp=[(0, 0), (1, 1)]), description="how far a lock wanders (deviation at the tip)"
+        default=Ramped(value=0.005, ramp=[(0, 0), (1, 1)]),
+        description="standard deviation of the displacement at the tip; larger is wilder",
     )
     wavelength: Annotated[float, Quantity("m", 1e-3, 10.0)] = Field(
-        default=0.03, description="length over which it changes"
+        default=0.03, description="length along the lock over which the displacement changes"
     )
 
     def displaced(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:

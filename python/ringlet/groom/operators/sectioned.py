@@ -68,7 +68,7 @@ class Sectioned(Shape):
     def resampled(self, curves: Curves, context: Context) -> Curves:
         """The curves with ``lock_points`` points or more each; raises UserError where no section has strands."""
         if STRAND not in curves.curve or not (curves.curve[STRAND] >= 0).any():
-            raise UserError(f"{context.purpose}: no section has strands; give [locks.sections] strands = 3, say")
+            raise UserError(f"{context.purpose}: no section has strands; set locks.sections.strands, such as 3")
         return with_lock_points(curves, context)
 
     def leaders(self, curves: Curves, acts: NDArray[np.bool_]) -> tuple[Curves, Sequence[NDArray[np.integer]]]:

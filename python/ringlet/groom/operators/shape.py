@@ -22,8 +22,12 @@ class Shape(Operator):
     Operators that rotate locks (``turns``) are blended edge by edge, so that lengths are interpolated too.
     """
 
-    mask: Annotated[Mask, Quantity("", 0.0, 1.0)] = Field(default=Mask(), description="where it acts")
-    blend: Annotated[float, Quantity("", 0.0, 1.0)] = Field(default=1.0, description="how much of it: 0 none, 1 all")
+    mask: Annotated[Mask, Quantity("", 0.0, 1.0)] = Field(
+        default=Mask(), description="where the operator acts: a number, or a table of a mask"
+    )
+    blend: Annotated[float, Quantity("", 0.0, 1.0)] = Field(
+        default=1.0, description="mix of the locks before the operator, 0, and after it, 1"
+    )
 
     turns: ClassVar[bool] = False
 
@@ -59,7 +63,8 @@ class Displacement(Shape):
     """Displaces the points of locks: they become longer or, with ``keep = "length"``, their silhouette shorter."""
 
     keep: Literal["silhouette", "length"] = Field(
-        default="silhouette", description="what it does not change: how far locks reach, or the length of their edges"
+        default="silhouette",
+        description="what is preserved: how far locks reach (silhouette), or the length of their edges",
     )
 
     def displaced(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:

@@ -20,7 +20,7 @@ class Smooth(Shape):
 
     op: Literal["smooth"] = "smooth"
     wavelength: Annotated[Varied, Quantity("m", 0.0, 10.0)] = Field(
-        default=Varied(value=0.02), description="length of the waves that are halved; shorter ones are taken out"
+        default=Varied(value=0.02), description="length of waves that are halved; shorter ones are removed"
     )
 
     def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:

@@ -20,7 +20,7 @@ class Straighten(Shape):
 
     op: Literal["straighten"] = "straighten"
     amount: Annotated[Ramped, Quantity("", 0.0, 1.0, product=False)] = Field(
-        default=Ramped(value=1.0), description="0 leaves the shape, 1 makes it straight"
+        default=Ramped(value=1.0), description="0 keeps the shape, 1 makes it straight"
     )
 
     turns: ClassVar[bool] = True

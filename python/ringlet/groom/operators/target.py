@@ -45,11 +45,12 @@ class ToTarget(Shape):
         description="how far the plane is from the middle of the scalp, 80 mm when absent; or how far beyond the mesh "
         "or the line locks end, 0 when absent",
     )
-    soft: Annotated[Varied, Quantity("m", 0.0, 0.1)] = Field(
-        default=Varied(value=0.003), description="how far tips scatter about the target to both sides"
+    spread: Annotated[Varied, Quantity("m", 0.0, 0.1)] = Field(
+        default=Varied(value=0.003),
+        description="how far tips scatter to both sides of the target; larger is more ragged",
     )
     least: Annotated[Varied, Quantity("m", 1e-4, 1.0)] = Field(
-        default=Varied(value=0.01), description="length that every lock keeps"
+        default=Varied(value=0.01), description="shortest length that a lock is cut to"
     )
     each: Literal["lock", "section"] = Field(
         default="lock", description="whether tips scatter each by itself, or all of a section together"
@@ -99,8 +100,8 @@ class ToTarget(Shape):
         own = self.line is None and self.mesh is None
         at = np.full(len(curves), PLANE if own else 0.0) if self.at is None else self._values("at", curves, context)
         leaders, row = self._leaders(curves)
-        chance = 2.0 * context.random("soft").uniform(leaders.ids) - 1.0
-        return at + self._values("soft", curves, context) * chance[row]
+        chance = 2.0 * context.random("spread").uniform(leaders.ids) - 1.0
+        return at + self._values("spread", curves, context) * chance[row]
 
     def _values(self, name: str, curves: Curves, context: Context) -> NDArray[np.float64]:
         leaders, row = self._leaders(curves)

@@ -47,35 +47,39 @@ class Tie(Shape):
     )
     toward: Direction | None = Field(
         default=None,
-        description="direction in which the tie is, from the middle of the scalp, Y up; per section it is added to the "
-        "unit direction of the section's middle",
+        description="direction of the tie from the middle of the scalp, Y up; per section it is added to the unit "
+        "direction of the section's middle",
     )
-    each: Literal["head", "section"] = Field(default="head", description="one tie for all, or one for each section")
+    each: Literal["head", "section"] = Field(
+        default="head", description="one tie for the head, or one for each section"
+    )
     off: Annotated[Varied, Quantity("m", 0.0, 0.5)] = Field(
         default=Varied(value=0.012),
-        description="distance of the tie from the skin; with `curve` that of its first point counts",
+        description="distance of the tie from the skin; with `curve` that of its first point",
     )
     radius: Annotated[Varied, Quantity("m", 0.0, 1.0)] = Field(
-        default=Varied(value=0.01), description="of the hair in the tie"
+        default=Varied(value=0.01), description="radius of the hair in the tie"
     )
     rise: Annotated[Ramped, Quantity("m", -0.5, 0.5)] = Field(
         default=Ramped(value=0.005),
-        description="how high the uppermost hair lies over the skin half-way to the tie, with a ramp from root to tie",
+        description="largest height of the hair over the skin half-way to the tie; its ramp runs from root to tie",
     )
     after: Literal["tail", "ball", "bun"] = Field(default="tail", description="what the hair becomes after the tie")
     flare: Annotated[Ramped, Quantity("", 0.0, 20.0, product=False)] = Field(
         default=Ramped(value=2.0, ramp=[(0, 0), (1, 1)]),
-        description="radius of a tail, as a multiple of that in the tie; its ramp goes from that in the tie, 0, to it",
+        description="radius of the tail, as a multiple of that in the tie; its ramp runs from the tie, 0, to the tip",
     )
     fall: Annotated[Varied, Quantity("m", 1e-3, 10.0)] = Field(
         default=Varied(value=0.06), description="length over which a tail without a curve turns down"
     )
     width: Annotated[Varied, Quantity("m", 5e-3, 1.0)] = Field(
-        default=Varied(value=0.12), description="of the ball or the bun"
+        default=Varied(value=0.12), description="width of the ball or the bun"
     )
-    height: Annotated[Varied, Quantity("m", 5e-3, 1.0)] = Field(default=Varied(value=0.04), description="of the bun")
+    height: Annotated[Varied, Quantity("m", 5e-3, 1.0)] = Field(
+        default=Varied(value=0.04), description="height of the bun"
+    )
     windings: Annotated[Varied, Quantity("", 1.0, 12.0)] = Field(
-        default=Varied(value=2.0), description="how often the hair of a bun is wound around the tie"
+        default=Varied(value=2.0), description="number of windings of a bun around the tie"
     )
     band: Annotated[Varied, Quantity("m", 0.0, 0.05)] = Field(
         default=Varied(value=0.0),
@@ -88,7 +92,7 @@ class Tie(Shape):
     @model_validator(mode="after")
     def _one_place(self) -> Tie:
         if self.curve is None and self.toward is None and self.each == "head":
-            raise refuse("says nowhere where the tie is; give it a curve, toward, or each = 'section'")
+            raise refuse("has no place for the tie; give it a curve, toward, or each = 'section'")
         if self.curve is not None and (self.toward is not None or self.each == "section"):
             raise refuse("has a curve and also toward or each = 'section'; give one of them")
         return self

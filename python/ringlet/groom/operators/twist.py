@@ -21,7 +21,7 @@ class Twist(Woven):
 
     op: Literal["twist"] = "twist"
     right_handed: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
-        default=Varied(value=1.0), description="part of the sections that are twisted right-handed: 1 all, 0 none"
+        default=Varied(value=1.0), description="fraction of the sections that are twisted right-handed"
     )
 
     @property

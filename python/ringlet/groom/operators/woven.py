@@ -33,16 +33,20 @@ class Woven(Ended):
     ``start`` and run on side by side over ``tail``."""
 
     width: Annotated[Ramped, Quantity("m", 5e-4, 0.2)] = Field(
-        default=Ramped(value=0.012), description="width, strands included; its ramp narrows the strands too"
+        default=Ramped(value=0.012),
+        description="width of the braid, strands included; its ramp narrows the strands too",
     )
     pitch: Annotated[Ramped | None, Quantity("m", 1e-3, 1.0)] = Field(
-        default=None, description="length after which a strand is where it was; a few widths when absent"
+        default=None,
+        description="length after which a strand is back in its place; a few widths when absent. Larger is a "
+        "looser weave",
     )
     tightness: Annotated[Varied, Quantity("", 0.05, 1.0)] = Field(
-        default=Varied(value=1.0), description="1: strands touch; less: they are thinner than the room they have"
+        default=Varied(value=1.0),
+        description="1: strands touch; smaller: they are thinner than their place in the weave",
     )
     start: Annotated[Varied, Quantity("m", 0.0, 1.0)] = Field(
-        default=Varied(value=0.01), description="length over which the strands come together"
+        default=Varied(value=0.01), description="length at the root over which the strands come together"
     )
     simulate: Literal["strands", "core"] = Field(
         default="strands",

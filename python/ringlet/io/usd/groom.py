@@ -248,7 +248,7 @@ def _grooms(source: Source, root: Usd.Prim) -> dict[str, dict[str, Any]]:
     for path in (LOCKS, GUIDES) if grooms else ():
         rows = UsdGeom.PrimvarsAPI(source.stage.GetPrimAtPath(path)).GetPrimvar(f"ringlet:{ROW}").Get()
         if rows is None or not len(rows) or min(rows) < 0 or max(rows) >= len(grooms) or list(rows) != sorted(rows):
-            raise UserError(f"{source.path}: {path} does not say which groom each curve is of; make the groom again")
+            raise UserError(f"{source.path}: {path} does not give the groom of each curve; make the groom again")
     return grooms
 
 
@@ -265,7 +265,7 @@ def groom_prim(source: Source) -> Usd.Prim:
     version = _get(root, "version") if root else None
     if version is None:
         raise UserError(
-            f"{source.path}: is no groom of Ringlet's; make one with: ringlet groom RECIPE.toml -o groom.usdc"
+            f"{source.path}: is not a Ringlet groom; make one with: ringlet groom RECIPE.toml -o groom.usdc"
         )
     check_version(source, version, SEVERAL)
     for path in (LOCKS, GUIDES):

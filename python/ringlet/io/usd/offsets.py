@@ -23,7 +23,7 @@ PREFIX = "ringlet:offsets:"
 def define_offsets(stage: Usd.Stage, path: str, offsets: HairOffsets) -> None:
     """Writes offsets to a prim [m], whatever the unit of the stage."""
     prim = UsdGeom.Scope.Define(stage, path).GetPrim()
-    _set(prim, "gather", Types.Float, offsets.gather)
+    _set(prim, "root_falloff", Types.Float, offsets.root_falloff)
     for name, values in vars(offsets).items():
         if isinstance(values, np.ndarray):
             kind, value = to_usd(values.reshape(-1, *ROWS[name]) if name in ROWS else values)
@@ -44,8 +44,9 @@ def offsets_at(prim: Usd.Prim, where: str) -> HairOffsets:
         if found[name].size % (count * prod(row)):
             raise UserError(f"{where}: {PREFIX}{name} does not fit its {count} hairs; adopt the hair again")
         found[name] = found[name].reshape(count, -1, *row)
-    gather = prim.GetAttribute(f"{PREFIX}gather")
-    return HairOffsets(**found, gather=float(gather.Get()) if gather else 0.0).check(where)
+    named = (prim.GetAttribute(PREFIX + name) for name in ("root_falloff", "gather"))  # the second is its former name
+    falloff = next((float(attribute.Get()) for attribute in named if attribute), 0.0)
+    return HairOffsets(**found, root_falloff=falloff).check(where)
 
 
 def write_offsets(offsets: HairOffsets, path: Path | str) -> None:

@@ -40,6 +40,6 @@ def read_rest(path: Path | str) -> tuple[Curves, dict[str, Any]]:
         made_from = metadata.get("made_from")
         prim = source.stage.GetPrimAtPath(LOCKS)
         if made_from is None or not prim:
-            raise UserError(f"{path}: is no lofted shape; make one with: ringlet loft SHOT.toml")
+            raise UserError(f"{path}: is not a rest shape; make one with: ringlet loft SHOT.toml")
         rest = own_curves(source, prim).check(source.where(prim))
         return rest, parse_json(source, made_from, "ringlet:made_from")

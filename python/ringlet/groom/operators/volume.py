@@ -14,16 +14,16 @@ from ringlet.groom.operators.operator import UP, Context, along_edges, between_e
 from ringlet.groom.operators.shape import Shape
 
 
-class Loft(Shape):
+class Volume(Shape):
     """Rotates every edge of a lock towards a lifting direction and keeps its length:
     ``edge' = |edge| · unit(edge + amount · |edge| · (up · world up + (1 - up) · normal))``."""
 
-    op: Literal["loft"] = "loft"
+    op: Literal["volume"] = "volume"
     amount: Annotated[Ramped, Quantity("", 0.0, 10.0)] = Field(
-        default=Ramped(value=0.5), description="0 leaves the shape, 1 halves the angle"
+        default=Ramped(value=0.5), description="0 keeps the shape, 1 halves the angle; larger stands up more"
     )
     up: Annotated[float, Quantity("", 0.0, 1.0)] = Field(
-        default=0.5, description="0 lifts off the scalp, 1 against gravity"
+        default=0.5, description="direction of the lift: 0 off the scalp, 1 against gravity"
     )
 
     turns: ClassVar[bool] = True
