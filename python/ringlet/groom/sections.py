@@ -83,9 +83,7 @@ class Sections(Section):
             lines = [chart.flat(np.asarray(curves[k], np.float64)) for k in range(len(curves))]
             drawn = DrawnPartLines(lines, chart.flat(places), self.size)
         cells = self._cells(chart, places, seed, drawn)
-        merged = Merged(
-            cells.key, places, 0.0 if drawn else WHOLE, along=cells.v if self.pattern == "rows" else None
-        )
+        merged = Merged(cells.key, places, 0.0 if drawn else WHOLE, along=cells.v if self.pattern == "rows" else None)
         ids, section = np.unique(merged.sections(cells.key, places), return_inverse=True)
         middle = np.array([places[section == k].mean(axis=0) for k in range(len(ids))])
         _, nearest = KDTree(places).query(middle)
