@@ -58,6 +58,7 @@ PAGE_FOOT = """
 
 - Wash-and-go: highlights of coils read as beads.
 - Locs: at part lines, hair gathers in tufts, without new growth that stands.
+- Cornrows and flat twists: the tail of the shortest row hangs over the ear.
 - Cornrows and flat twists on the adult: rows turn aside at their last centimetre, at the nape.
 """
 
