@@ -56,11 +56,10 @@ mesh = "/adult/skin"
 PAGE_FOOT = """
 ## What a groomer would still refuse
 
-- Cornrows and flat twists: the lowest row, above the ear, gathers a wide section, whose hair reads as loose strokes.
-- Locs: at the part line, skin shows on the far side of each brick, where hair is drawn away from it.
-- Rounded afro: over the ears it is hollow, and at the nape it hangs lower than a ball.
 - Wash-and-go: highlights of coils read as beads.
-- Box braids: all tails end at one height.
+- Locs: at part lines, hair gathers in tufts, without new growth that stands.
+- Cornrows and flat twists: the tail of the shortest row hangs over the ear.
+- Cornrows and flat twists on the adult: rows turn aside at their last centimetre, at the nape.
 """
 
 
@@ -213,7 +212,19 @@ def write_page(styles: list[Style]) -> None:
     ]
     rows = [cells[first : first + COLUMNS] for first in range(0, len(cells), COLUMNS)]
     overview = table([row + [""] * (COLUMNS - len(row)) for row in rows])
-    (DOCS / "gallery.md").write_text("\n".join([PAGE_HEAD, overview, *map(section, styles), PAGE_FOOT]))
+    foot = [PAGE_FOOT, *outdated(styles)]
+    (DOCS / "gallery.md").write_text("\n".join([PAGE_HEAD, overview, *map(section, styles), *foot]))
+
+
+def outdated(styles: list[Style]) -> list[str]:
+    """A line of the page on the pictures that are there but show an earlier recipe, if there are any."""
+    names = [
+        f"`{picture_path(style, name).stem}`"
+        for style, due_names in due(styles, again=False)
+        for name in due_names
+        if picture_path(style, name).exists()
+    ]
+    return [f"Pictures that show an earlier recipe or operator: {', '.join(names)}.\n"] if names else []
 
 
 def section(style: Style) -> str:

@@ -9,6 +9,7 @@ from ringlet.data.pigment import curve_reflectance
 from ringlet.groom.operators.operator import grid
 from ringlet.groom.operators.tied import TO_TIE
 from ringlet.groom.scalp import Scalp
+from ringlet.groom.shares import REACH
 
 import ringlet
 from ringlet.groom import PRESETS, grooms_of, hairs_per_cm2, make_hairs, read_recipe
@@ -31,6 +32,13 @@ def test_a_look_is_short_builds_and_has_strands_of_equal_number(recipe):
     sections, strands = np.unique(groom.locks.curve[SECTION], return_counts=True)
     assert len(sections) > 6 and len(set(strands.tolist())) == 1
     assert len(make_hairs(groom, fraction=0.1).curves) > len(groom.locks)
+
+
+@pytest.mark.parametrize("look", ["cornrows", "flat_twists"])
+def test_no_row_takes_hair_from_farther_than_its_width(look):
+    recipe = EXAMPLES / "looks" / f"{look}.recipe.toml"
+    reach = ringlet.build_groom(recipe).locks.curve[REACH]
+    assert 0.0 < reach.max() < 0.85 * read_recipe(recipe).locks.sections.size
 
 
 @pytest.mark.parametrize("recipe", TIED_LOOKS, ids=name)

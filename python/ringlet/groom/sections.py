@@ -22,7 +22,7 @@ from ringlet.groom.scalp import Scalp
 
 MOST_CELLS = 4096  # along each axis of the chart, so that a section's id fits 24 bits
 SAMPLES_A_SIDE = 6  # of the scalp, per side of a section
-WHOLE = 0.35  # a cell that covers less than this part of the usual area belongs to its neighbour
+WHOLE = 0.35  # a cell with less than this part of the usual area, or a row of the usual width, belongs to its neighbour
 FLATTEST = 20.0  # radius of the sphere through a flat scalp, in sizes of the scalp
 STRANDS_APART = 0.2  # distance of a section's strands from its middle at the scalp, in sizes of the section
 
@@ -83,7 +83,7 @@ class Sections(Section):
             lines = [chart.flat(np.asarray(curves[k], np.float64)) for k in range(len(curves))]
             drawn = DrawnPartLines(lines, chart.flat(places), self.size)
         cells = self._cells(chart, places, seed, drawn)
-        merged = Merged(cells.key, places, 0.0 if drawn else WHOLE)
+        merged = Merged(cells.key, places, 0.0 if drawn else WHOLE, along=cells.v if self.pattern == "rows" else None)
         ids, section = np.unique(merged.sections(cells.key, places), return_inverse=True)
         middle = np.array([places[section == k].mean(axis=0) for k in range(len(ids))])
         _, nearest = KDTree(places).query(middle)
@@ -244,20 +244,29 @@ class Division:
 class Merged:
     """The section of each cell: its own, or the nearest where the scalp's border leaves little of the cell."""
 
-    def __init__(self, key: NDArray, places: NDArray, least: float) -> None:
+    def __init__(self, key: NDArray, places: NDArray, least: float, along: NDArray | None = None) -> None:
         """From the cells, shape (n,), of samples of the scalp at places (n, 3) [m].
 
         least: part of the usual area below which a cell belongs to its neighbour
+        along: places along rows, shape (n,): a row is as long as the scalp allows, so that mean widths are compared
         """
         keys, cell, count = np.unique(key, return_inverse=True, return_counts=True)
         middle = np.stack([np.bincount(cell, places[:, k]) / count for k in range(3)], axis=1)
-        whole = count >= least * np.median(count)
+        extent = count if along is None else count / np.maximum(_ranges(along, cell), 1e-9)
+        whole = extent >= least * np.median(extent)
         self._sections, self._nearest = keys[whole], KDTree(middle[whole])
 
     def sections(self, key: NDArray, places: NDArray) -> NDArray[np.int64]:
         """Sections of places (n, 3) [m] in cells (n,)."""
         row = np.minimum(np.searchsorted(self._sections, key), len(self._sections) - 1)
         return np.where(self._sections[row] == key, key, self._sections[self._nearest.query(places)[1]])
+
+
+def _ranges(values: NDArray, cell: NDArray) -> NDArray[np.float64]:
+    """Largest less smallest value in each cell, shape (cells,); values and cells, 0, 1, …, have shape (n,)."""
+    order = np.argsort(cell, kind="stable")
+    first = np.flatnonzero(np.diff(cell[order], prepend=-1))
+    return np.maximum.reduceat(values[order], first) - np.minimum.reduceat(values[order], first)
 
 
 def _key(i: NDArray, j: NDArray) -> NDArray[np.int64]:
