@@ -65,16 +65,16 @@ def test_a_follower_sees_the_comparison_as_the_leader_arranges_it(pair: tuple[Re
     one.page.get_by_label("Compare with another look").select_option(index=1)
     for review in pair:
         review.until("ringlet.viewer.compared && ringlet.viewer.hair.b.table")
-    one.page.get_by_label("Arrangement of the two looks").select_option("wipe")
+    one.page.get_by_label("Arrangement of the looks").select_option("wipe")
     one.page.get_by_label("Place of the wipe").press("ArrowRight")
     place = one.get("ringlet.viewer.looks.wipe")
     assert place > 0.5
     two.until(f"ringlet.viewer.looks.arrangement == 'wipe' && ringlet.viewer.looks.wipe == {place}")
     one.page.get_by_role("button", name="Swap the two sides").click()
     two.until("ringlet.viewer.looks.order.join() == 'b,a'")
-    assert two.page.get_by_label("Arrangement of the two looks").input_value() == "wipe"
+    assert two.page.get_by_label("Arrangement of the looks").input_value() == "wipe"
     assert two.get("'follows' in document.documentElement.dataset")
-    two.page.get_by_label("Arrangement of the two looks").select_option("difference")
+    two.page.get_by_label("Arrangement of the looks").select_option("difference")
     one.until("ringlet.model.role.people.some((person) => !person.follows)")  # it looks on its own from now on
     assert one.get("ringlet.viewer.looks.arrangement") == "wipe"
 

@@ -29,7 +29,7 @@ export class Tray {
     this.button.setAttribute("aria-pressed", "false");
     const close = iconButton("close", "Close the tray", () => this.show(false));
     this.element.append(h("header", { class: "tray-head" }, this.list, this.actions, authorField(renamed), close), this.body);
-    bindKey({ keys: "T", does: "the tray of snapshots, notes and references", on: plainKey("t"), run: () => this.show(this.element.hidden === true) });
+    bindKey({ section: "Review", keys: "T", does: "open or close the tray of snapshots, notes and references", on: plainKey("t"), run: () => this.show(this.element.hidden === true) });
   }
 
   add(tab: TrayTab): void {
