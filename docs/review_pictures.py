@@ -205,9 +205,13 @@ def people(browser: Browser) -> Movie:
         two.page.keyboard.press("a")
         two.page.get_by_label("Text of the note").fill("Shorter, to see the ear")
         two.press("Arrow")
-        two.stroke((660, 250), (600, 300))
+        two.laid_out()
+        clear = two.get("ringlet.viewer.clear")
+        ear = (clear["x"] + 0.57 * clear["width"], clear["y"] + 0.52 * clear["height"])
+        two.stroke((ear[0] + 80, ear[1] + 50), (ear[0] + 10, ear[1] + 6))
         movie.still(2000)
         two.press("Keep")
+        two.page.locator("main canvas").focus()
         one.until("ringlet.model.notes.length == 1")
         one.page.keyboard.press("t")
         one.page.get_by_role("tab", name="Notes").click()
@@ -224,7 +228,8 @@ def people(browser: Browser) -> Movie:
         one.page.get_by_role("button", name="Compare with ‘").click()
         for page in movie.pages:
             page.until("ringlet.viewer.compared && ringlet.viewer.hair.b.table")
-        one.page.keyboard.press("t")
+        for page in movie.pages:
+            page.page.keyboard.press("t")
         one.page.get_by_label("Arrangement of the looks").select_option("wipe")
         line = one.page.get_by_label("Place of the wipe")
         for presses in (0, 6):

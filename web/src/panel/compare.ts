@@ -164,8 +164,8 @@ export class CompareBar {
     if (looks.arrangement === "flip") return [[looks.front, at, under, -50, clear.width]];
     const [first, second] = looks.order;
     return [
-      [first, at - 16, under, -100, clear.width / 2],
-      [second, at + 16, under, 0, clear.width / 2],
+      [first, at - 16, under, -100, clear.width / 2 - 24],
+      [second, at + 16, under, 0, clear.width / 2 - 24],
     ];
   }
 
