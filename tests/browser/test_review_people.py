@@ -28,6 +28,9 @@ def test_people_give_their_name_once_and_see_who_is_there(pair: tuple[Review, Re
     two.page.get_by_role("button", name="Stay a guest").click()
     two.until("ringlet.model.role.people.some((person) => person.name == 'Ann Lee')")
     assert not one.page.get_by_label("Your name for them").is_visible()
+    one.page.keyboard.press("t")
+    assert one.page.locator(".tray .author").input_value() == "Ann Lee"
+    one.page.keyboard.press("t")
     two.page.get_by_role("button", name="2 people are here").click()
     rows = two.page.get_by_role("list", name="People").get_by_role("listitem").all_inner_texts()
     assert [row.split("\n")[1:] for row in rows] == [["Ann Lee", "edits"], ["Guest 2 (you)", "follows"]]
