@@ -213,7 +213,8 @@ def test_points_of_a_ramp_stay_in_its_box_and_shapes_are_offered(opened: Any):
 
 
 OVERLAPS = """() => {
-    const parts = [...document.querySelectorAll('.bar, .left > *, .settings, .tray, .viewbar, .status, .sheets, .problems')]
+    const panels = '.bar, .left > *, .settings, .tray, .viewbar, .status, .sheets, .problems';
+    const parts = [...document.querySelectorAll(panels)]
         .filter((e) => e.checkVisibility() && e.getBoundingClientRect().height > 0)
         .map((e) => {
             const box = e.getBoundingClientRect(), clip = e.closest('.left')?.getBoundingClientRect() ?? box;
