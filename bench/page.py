@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import statistics
 import sys
 import tempfile
@@ -37,8 +38,9 @@ PROBE = """
   };
   const { draw, onDraw } = viewer;
   let began = 0;
-  viewer.draw = () => { began = now(); draw.call(viewer); };
   window.drawn = [];
+  window.scripts = [];
+  viewer.draw = () => { began = now(); draw.call(viewer); scripts.push(now() - began); };
   viewer.onDraw = (statistics) => {
     if (statistics.drawMs !== undefined) drawn.push([statistics.drawMs, statistics.shown]);
     if (marks.came && !marks.done && began > marks.came) marks.done = now();
@@ -50,7 +52,7 @@ PROBE = """
 ORBIT = """
 (seconds) => new Promise((done) => {
   const { viewer } = ringlet, end = performance.now() + 1000 * seconds, first = viewer.pictures;
-  drawn.length = 0;
+  drawn.length = scripts.length = 0;
   const turn = () => {
     if (performance.now() > end) return done(viewer.pictures - first);
     viewer.orbit(0.02, 0);
@@ -84,6 +86,12 @@ def run(
     server:   the groom, as the server reports it
     transfer: the rest of the time until the page has the locks: queues, encoding and the socket
     page:     from there to the first picture that shows them
+
+    Of a picture while the camera orbits:
+
+    picture:  from the begin of a drawing until the graphics card reports it as done
+    script:   the page's own share of that; the rest is drawing
+    server:   processor time of the server in the same time
     """
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
@@ -109,12 +117,15 @@ def run(
         server, review = opened(orbit_locks)
         try:
             review.until("drawn.length > 2")  # shaders are compiled
+            before = processor_ms(server)
             pictures = review.page.evaluate(ORBIT, seconds)
             drawn = review.get("drawn")
             orbit = {
                 "hairs": review.get("ringlet.model.numbers.hairs"),
                 "pictures_per_s": pictures / seconds,
                 "picture_ms": statistics.median([took for took, _ in drawn]),
+                "script_ms": statistics.median(review.get("scripts")),
+                "server_ms": (processor_ms(server) - before) / pictures,
                 "hairs_drawn": statistics.median([shown for _, shown in drawn]),
             }
         finally:
@@ -150,6 +161,13 @@ def drag(review: Review, steps: int) -> dict[str, dict[str, float]]:
         kind: {part: statistics.median([one[part] for one in times]) for part in times[0]}
         for kind, times in found.items()
     }
+
+
+def processor_ms(server: Server) -> float:
+    """Processor time of a server so far, from /proc [ms]."""
+    assert server.process
+    user, system = Path(f"/proc/{server.process.pid}/stat").read_text().rsplit(")", 1)[1].split()[11:13]
+    return 1e3 * (int(user) + int(system)) / os.sysconf("SC_CLK_TCK")
 
 
 def parts(marks: dict[str, float]) -> dict[str, float]:

@@ -42,7 +42,7 @@ FEW = {
     r"per_lock = \d+": "per_lock = 4",
     r"frames = \[1, 30\]": "frames = [1, 4]",
 }  # where panels are looked at
-SOME = {r"count = 1050": "count = 620", r"per_lock = 36": "per_lock = 12"}  # in a movie
+SOME = {r"count = 1050": "count = 420", r"per_lock = 36": 'per_lock = 8\nwidth = "0.3 mm"'}  # few and thick, in a movie
 TIMELESS = "[data-number=draw], [data-number=groom] { display: none }"  # times of a busy machine in software
 
 
@@ -117,13 +117,27 @@ def review(browser: Browser) -> Image.Image:
         return page.taken()
 
 
+# The lock that stands out most to the upper right, where its handles are seen against the wall.
+OUTERMOST = """(() => {
+    const { locks } = ringlet.viewer.hair.a, m = ringlet.viewer.camera.matrixWorld.elements;
+    const at = (row, c) => locks.points[3 * locks.offsets[row + 1] - 3 + c];
+    const out = (row) => [0, 1, 2].reduce((sum, c) => sum + at(row, c) * (m[c] + m[4 + c]), 0);
+    const rows = [...locks.ids.keys()];
+    ringlet.lock.choose(rows.reduce((best, row) => (out(row) > out(best) ? row : best)));
+})()"""
+
+
 def lock(browser: Browser) -> Image.Image:
     with page_of(browser, "curls.recipe.toml", DESKTOP, "dark") as page:
         page.choose("curl")
-        page.page.mouse.click(540, 220)  # hair over the forehead
-        page.until("ringlet.lock.rows.length == 1")
+        page.get("(ringlet.viewer.orbit(0.5, 0.1), ringlet.viewer.move())")
+        page.get(OUTERMOST)
         page.press("Isolate")
         page.until("ringlet.viewer.hair.a.locks.marked[ringlet.lock.rows[0]] == 1")
+        page.settled()
+        tip = page.page.locator(".handles circle").last.bounding_box()
+        assert tip
+        page.stroke((tip["x"] + 6, tip["y"] + 6), (tip["x"] + 46, tip["y"] + 16))
         page.page.get_by_text("values of this lock alone").click()
         return page.taken()
 
@@ -149,7 +163,7 @@ def shot(browser: Browser) -> Image.Image:
 
 
 def tablet(browser: Browser) -> Image.Image:
-    with page_of(browser, "curls.recipe.toml", TABLET, "light", touch=True) as page:
+    with page_of(browser, "curls.recipe.toml", LYING, "light", touch=True) as page:
         page.page.keyboard.press("b")
         return page.taken()
 
@@ -191,9 +205,13 @@ def people(browser: Browser) -> Movie:
         two.page.keyboard.press("a")
         two.page.get_by_label("Text of the note").fill("Shorter, to see the ear")
         two.press("Arrow")
-        two.stroke((660, 250), (600, 300))
+        two.laid_out()
+        clear = two.get("ringlet.viewer.clear")
+        ear = (clear["x"] + 0.57 * clear["width"], clear["y"] + 0.52 * clear["height"])
+        two.stroke((ear[0] + 80, ear[1] + 50), (ear[0] + 10, ear[1] + 6))
         movie.still(2000)
         two.press("Keep")
+        two.page.locator("main canvas").focus()
         one.until("ringlet.model.notes.length == 1")
         one.page.keyboard.press("t")
         one.page.get_by_role("tab", name="Notes").click()
@@ -205,13 +223,14 @@ def people(browser: Browser) -> Movie:
         shorter = "{ kind: 'set', file: 'recipe', changes: [[['guides', 'length', 'value'], 6]], gesture: 1 }"
         one.get(f"ringlet.model.say({shorter})")
         for page in movie.pages:
-            page.until("ringlet.model.value('recipe', ['guides', 'length', 'value']) == 6")
+            page.until("ringlet.model.said('recipe', ['guides', 'length', 'value']) == 6")
         movie.still(1200)
         one.page.get_by_role("button", name="Compare with ‘").click()
         for page in movie.pages:
             page.until("ringlet.viewer.compared && ringlet.viewer.hair.b.table")
-        one.page.keyboard.press("t")
-        one.page.get_by_label("Arrangement of the two looks").select_option("wipe")
+        for page in movie.pages:
+            page.page.keyboard.press("t")
+        one.page.get_by_label("Arrangement of the looks").select_option("wipe")
         line = one.page.get_by_label("Place of the wipe")
         for presses in (0, 6):
             for _ in range(presses):
@@ -257,7 +276,7 @@ def reach(page: Page, state: str) -> None:
         case "wipe":
             page.page.get_by_label("Compare with a run or cache").select_option("run 1")
             page.until("ringlet.viewer.compared")
-            page.page.get_by_label("Arrangement of the two looks").select_option("wipe")
+            page.page.get_by_label("Arrangement of the looks").select_option("wipe")
 
 
 def run_twice(page: Page) -> None:

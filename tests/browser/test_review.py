@@ -217,7 +217,7 @@ def test_guides_are_sculpted_with_a_brush(opened: Any):
     review.until("!ringlet.model.documents.recipe.dirty && !ringlet.model.guides.changed.some(one => one)")
     page.keyboard.press("Control+Shift+z")
     review.until("ringlet.model.guides.changed.some(one => one)")
-    page.get_by_role("button", name="Return all guides").click()
+    page.get_by_role("button", name="Reset all").click()
     review.until("!ringlet.model.guides.changed.some(one => one)")
     assert not review.errors
 
@@ -233,7 +233,7 @@ def test_a_value_is_set_for_one_lock_and_reverted(opened: Any):
     after = np.array(review.get("Array.from(ringlet.viewer.hair.a.locks.points)")).reshape(8, -1)
     moved = np.abs(after - before).max(axis=1)
     assert moved[2] > 0.001 and np.delete(moved, 2).max() == 0.0
-    review.page.get_by_label("Not its own curl width").click()
+    review.page.get_by_label("Remove its own curl width").click()
     review.until("!Object.keys(ringlet.model.documents.recipe.said.curl.width.lock ?? {}).length")
     assert not review.errors
 
@@ -254,7 +254,7 @@ def test_a_value_of_several_locks_is_set_and_reverted_in_one_step(opened: Any):
     listed = review.page.locator(".lock .own").first.locator("li").all_inner_texts()
     assert any("curl pitch" in one and "of 1 of 2" in one for one in listed)
     assert any("curl width" in one and " of " not in one for one in listed)
-    review.page.get_by_label("Not its own curl width").click()
+    review.page.get_by_label("Remove its own curl width").click()
     review.until("!Object.keys(ringlet.model.documents.recipe.said.curl.width.lock ?? {}).length")
     review.page.keyboard.press("Control+z")
     review.until("Object.keys(ringlet.model.documents.recipe.said.curl.width.lock ?? {}).length === 2")
@@ -327,6 +327,6 @@ def test_colour_is_edited_and_shown(opened: Any):
     red, _, blue = np.moveaxis(review.picture() - light, 2, 0)
     assert tomllib.loads(review.text())["color"]["dye"]["color"] == "#1020ff"
     assert red.sum() < blue.sum()
-    review.page.locator('select[aria-label="Hair colour"]').select_option("dark_brown")
+    review.page.locator('select[aria-label="Hair color"]').select_option("dark_brown")
     assert different(review.picture(), before) < 0.002
     assert not review.errors

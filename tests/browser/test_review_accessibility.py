@@ -82,12 +82,12 @@ def test_every_state_of_a_recipe_is_accessible(opened: Any):
     page.get_by_label("Compare with another look").select_option("now")
     review.until("ringlet.viewer.compared")
     for arrangement in ("split", "wipe"):
-        page.get_by_label("Arrangement of the two looks").select_option(arrangement)
+        page.get_by_label("Arrangement of the looks").select_option(arrangement)
         checked.check(f"compared, {arrangement}")
     page.get_by_role("button", name="Changes").click()
     checked.check("changes")
     page.get_by_role("button", name="End", exact=True).click()
-    page.get_by_label("Dark or light").click()
+    page.get_by_label("Dark or light theme").click()
     checked.check("light theme")
     assert checked.found == {}
 

@@ -136,10 +136,10 @@ def test_light_lens_and_bookmarks_are_kept_with_the_recipe_for_other_browsers(op
     before = review.get(size)
     page.get_by_role("button", name="Camera, light and sheet").click()
     page.get_by_label("Focal length").fill("50")
-    page.get_by_label("Turn of the lights").fill("90")
+    page.get_by_label("Light rotation").fill("90")
     review.settled()
     assert review.get(size) == pytest.approx(before)  # of the subject in the picture
-    page.get_by_role("button", name="Keep bookmark 2").click()
+    page.get_by_role("button", name="Store bookmark 2").click()
     review.until("ringlet.model.views['0']?.light_turn == 90 && ringlet.model.views['2']")
     page.close()
     other: Review = opened(server)

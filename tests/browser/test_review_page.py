@@ -38,7 +38,7 @@ def test_controls_are_labelled_legible_and_reachable_by_keyboard(opened: Any):
     review.page.keyboard.press("Escape")
     assert not review.get("ringlet.brush.on")
     dark = review.picture().mean()
-    review.page.get_by_label("Dark or light").press("Enter")
+    review.page.get_by_label("Dark or light theme").press("Enter")
     assert review.get("document.documentElement.dataset.theme") == "light"
     assert review.page.evaluate(REACH) == {"nameless": [], "faint": []}
     assert abs(review.picture().mean() - dark) < 5  # the wall is that of the render in both
@@ -62,7 +62,7 @@ def test_pictures_and_movies_are_saved(opened: Any):
     for size, clear in (("", False), ("2048 × 2048", True)):
         review.page.get_by_role("button", name="Save picture").click()
         review.page.get_by_label("Size in pixels").select_option(size)
-        review.page.get_by_label("Without the wall").set_checked(clear)
+        review.page.get_by_label("Transparent background").set_checked(clear)
         with review.page.expect_download() as picture:
             review.page.get_by_role("dialog").get_by_role("button", name="Save", exact=True).click()
         assert picture.value.suggested_filename == "small.png"

@@ -28,6 +28,9 @@ def test_people_give_their_name_once_and_see_who_is_there(pair: tuple[Review, Re
     two.page.get_by_role("button", name="Stay a guest").click()
     two.until("ringlet.model.role.people.some((person) => person.name == 'Ann Lee')")
     assert not one.page.get_by_label("Your name for them").is_visible()
+    one.page.keyboard.press("t")
+    assert one.page.locator(".tray .author").input_value() == "Ann Lee"
+    one.page.keyboard.press("t")
     two.page.get_by_role("button", name="2 people are here").click()
     rows = two.page.get_by_role("list", name="People").get_by_role("listitem").all_inner_texts()
     assert [row.split("\n")[1:] for row in rows] == [["Ann Lee", "edits"], ["Guest 2 (you)", "follows"]]
@@ -65,16 +68,16 @@ def test_a_follower_sees_the_comparison_as_the_leader_arranges_it(pair: tuple[Re
     one.page.get_by_label("Compare with another look").select_option(index=1)
     for review in pair:
         review.until("ringlet.viewer.compared && ringlet.viewer.hair.b.table")
-    one.page.get_by_label("Arrangement of the two looks").select_option("wipe")
+    one.page.get_by_label("Arrangement of the looks").select_option("wipe")
     one.page.get_by_label("Place of the wipe").press("ArrowRight")
     place = one.get("ringlet.viewer.looks.wipe")
     assert place > 0.5
     two.until(f"ringlet.viewer.looks.arrangement == 'wipe' && ringlet.viewer.looks.wipe == {place}")
     one.page.get_by_role("button", name="Swap the two sides").click()
     two.until("ringlet.viewer.looks.order.join() == 'b,a'")
-    assert two.page.get_by_label("Arrangement of the two looks").input_value() == "wipe"
+    assert two.page.get_by_label("Arrangement of the looks").input_value() == "wipe"
     assert two.get("'follows' in document.documentElement.dataset")
-    two.page.get_by_label("Arrangement of the two looks").select_option("difference")
+    two.page.get_by_label("Arrangement of the looks").select_option("difference")
     one.until("ringlet.model.role.people.some((person) => !person.follows)")  # it looks on its own from now on
     assert one.get("ringlet.viewer.looks.arrangement") == "wipe"
 

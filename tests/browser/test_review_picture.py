@@ -130,6 +130,31 @@ def test_pictures_are_fluent_while_something_moves_and_soon_cancelled_at_rest(op
     assert max(times(SOFTWARE="true", MOVING="false", PER_HAIR=0.02)) < 100
 
 
+def test_input_ends_a_progressive_picture_after_one_drawing(opened: Any):
+    review: Review = opened()
+    review.until("ringlet.viewer.idle")
+    # A picture at rest of dozens of drawings, none of which is planned to take longer than input may wait.
+    review.get("(ringlet.viewer.pace.took = () => {}, ringlet.viewer.pace.whole = 4000)")
+    at_rest, moving = (review.get(f"ringlet.viewer.pace.next({way})") for way in ("false", "true"))
+    assert at_rest["drawings"] == 1 and 4000 * at_rest["fraction"] < 100
+    assert review.get(f"ringlet.viewer.pace.needed({at_rest['fraction']})") > 20
+    review.get("""(() => {
+        const { viewer } = ringlet;
+        window.seen = [];
+        viewer.onPaint = () => {
+            seen.push([viewer.film.drawings, viewer.camera.position.x]);
+            const key = new KeyboardEvent("keydown", { key: "ArrowLeft", bubbles: true });
+            if (seen.length === 4) viewer.renderer.domElement.dispatchEvent(key);
+        };
+        viewer.invalidate();
+    })()""")
+    review.until("seen.length > 4")
+    drawings, eyes = zip(*review.get("seen.slice(0, 5)"), strict=True)
+    assert drawings[:4] == (1, 2, 3, 4) and len(set(eyes[:4])) == 1
+    assert drawings[4] == moving["drawings"] and eyes[4] != eyes[3]
+    assert not review.errors
+
+
 def test_a_render_is_shown_in_place_wiped_saved_and_ended_by_a_move(opened: Any, tmp_path: Path):
     review: Review = opened(viewport={"width": 760, "height": 500})
     choose = "(list) => { list.append(new Option('', '4')); list.value = '4'; }"

@@ -46,7 +46,7 @@ def test_the_review_saves_a_share_page(opened: Any, browser: Any, tmp_path: Path
     review: Review = opened()
     review.get("(ringlet.viewer.orbit(0.5, 0.1), ringlet.viewer.move())")
     with review.page.expect_download() as saved:
-        review.page.get_by_role("button", name="Save a page to share").click()
+        review.page.get_by_role("button", name="Save a share page").click()
     assert saved.value.suggested_filename == "small.html"
     saved.value.save_as(tmp_path / "small.html")
     context = browser.new_context(viewport={"width": 600, "height": 500}, offline=True, reduced_motion="reduce")

@@ -69,7 +69,7 @@ def test_frames_are_played_between_in_and_out_points_at_a_rate(opened: Any):
     canvas.press("End")
     assert review.get("ringlet.timeline.current") == 3
     review.get("(window.played = new Set(), setInterval(() => played.add(ringlet.timeline.current), 5))")
-    review.page.get_by_label("Frames a second of playback").select_option("60")
+    review.page.get_by_label("Playback rate (frames per second)").select_option("60")
     canvas.press(" ")
     review.until("played.size == 2 && played.has(2) && played.has(3)")
     review.page.wait_for_timeout(500)
@@ -142,7 +142,7 @@ def test_the_page_keeps_only_frames_near_the_current_one(opened: Any, folder: Pa
     review.until("ringlet.timeline.settled && ringlet.timeline.frames.shot.has(115)")
     kept = review.get("[...ringlet.timeline.frames.shot.keys()].filter((frame) => frame > 20 && frame < 299)")
     assert sorted(kept) == list(range(100, 116))
-    review.page.get_by_label("Play what is there").click()
+    review.page.get_by_label("Play the simulated frames").click()
     review.until("ringlet.timeline.frame > 130 && ringlet.timeline.frame < 300")
     assert not review.errors
 
@@ -214,7 +214,7 @@ def test_an_earlier_run_is_compared_by_wipe_and_the_chart_shows_its_swing(opened
     room = review.get("ringlet.viewer.clear")
     page.get_by_label("Compare with a run or cache").select_option("run 1")
     review.until("ringlet.viewer.compared && ringlet.model.timeline.against == 'run 1'")
-    page.get_by_label("Arrangement of the two looks").select_option("wipe")
+    page.get_by_label("Arrangement of the looks").select_option("wipe")
     review.get("ringlet.timeline.goTo(4)")
     review.until("ringlet.timeline.settled && ringlet.timeline.drawn.against")
     wiped = review.clear_picture()

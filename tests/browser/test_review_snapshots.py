@@ -70,7 +70,7 @@ def test_a_snapshot_is_taken_compared_loaded_noted_and_deleted(opened: Any, fold
     assert different(review.picture(), first) < 0.002
     page.keyboard.press("Control+z")
     review.until("ringlet.model.said('recipe', ['curl', 'width']) == 2.5")
-    cards.first.get_by_role("button", name="Delete it").click()
+    cards.first.get_by_role("button", name="Delete").click()
     page.get_by_role("dialog").get_by_role("button", name="Delete", exact=True).click()
     review.until("ringlet.model.snapshots.length == 1")
     page.reload()
@@ -105,7 +105,7 @@ def test_four_looks_have_one_camera_and_their_labels(opened: Any):
     for side in "abcd":
         assert look_of(review, side).shape == whole.shape
     review.get("(ringlet.viewer.looks.order = ['a', 'b', 'c', 'd'])")
-    page.get_by_role("button", name="Take ‘now’ out").click()
+    page.get_by_role("button", name="Remove ‘now’ from the comparison").click()
     assert page.locator(".look-label").count() == 3
     assert not review.errors
 
@@ -115,7 +115,7 @@ def test_the_difference_of_two_looks_is_where_they_differ(opened: Any):
     page = review.page
     page.get_by_label("Compare with another look").select_option("now")
     review.until("ringlet.viewer.compared && ringlet.viewer.hair.b.table")
-    page.get_by_label("Arrangement of the two looks").select_option("difference")
+    page.get_by_label("Arrangement of the looks").select_option("difference")
     saturation = lambda image: image.max(axis=2) - image.min(axis=2)  # noqa: E731
     assert saturation(review.picture()).max() < 12  # two equal looks
     set_curl(review, width=3)
@@ -132,7 +132,7 @@ def test_a_page_that_follows_sees_snapshots_and_takes_some(opened: Any, serve: A
     follower: Review = opened(server)
     take(follower)
     lead.until("ringlet.model.snapshots.length == 1")
-    assert follower.page.get_by_role("button", name="Load: set the recipe to it").is_disabled()
+    assert follower.page.get_by_role("button", name="Load: use its settings").is_disabled()
 
 
 @pytest.mark.parametrize("width, height", [(390, 844), (1280, 800)])

@@ -160,7 +160,10 @@ def test_keys_act_on_the_page_but_not_on_text_that_is_typed(opened: Any):
     page.keyboard.press("f")
     assert review.get("ringlet.viewer.camera.position.toArray()") != eye
     page.keyboard.press("?")
-    assert "Ctrl+Shift+Z" in page.get_by_role("dialog", name="Keys").inner_text()
+    assert "Ctrl+Shift+Z" in page.get_by_role("dialog", name="Keyboard shortcuts").inner_text()
+    shortcuts = page.get_by_role("region", name="Keyboard shortcuts")
+    assert shortcuts.get_by_role("heading").all_inner_texts() == ["File", "View", "Groom", "Review", "Frames"]
+    assert shortcuts.evaluate("(list) => list.scrollWidth <= list.clientWidth")
     page.keyboard.press("Escape")
     page.keyboard.press("Control+z")
     review.until("!ringlet.model.documents.recipe.dirty")
@@ -177,7 +180,7 @@ def test_another_file_is_opened_after_unsaved_changes_are_saved(opened: Any, fol
     review.until("ringlet.model.documents.recipe.dirty && ringlet.model.files.length")
     page.keyboard.press("Control+o")
     page.get_by_role("button", name="other.recipe.toml").click()
-    page.get_by_role("button", name="Save them").click()
+    page.get_by_role("button", name="Save and open").click()
     review.until("ringlet.model.welcome.name == 'other.recipe.toml' && ringlet.model.settled")
     assert review.get("ringlet.viewer.hair.a.locks.ids.length") == 9
     assert "width = 2" in (folder / "small.recipe.toml").read_text()
@@ -205,12 +208,13 @@ def test_points_of_a_ramp_stay_in_its_box_and_shapes_are_offered(opened: Any):
         heights = [float(dot.get_attribute("cy")) for dot in ramp.locator("circle").all()]
         assert min(heights) >= 5 and max(heights) <= 99
     assert next(text for text in ramp.locator("text").all_text_contents() if text) == "0"
-    review.page.get_by_label("ramp: shape of the curve").first.select_option("fades to the tip")
+    review.page.get_by_label("ramp: shape of the curve").first.select_option("decreases to the tip")
     review.until("JSON.stringify(ringlet.model.documents.recipe.said.curl.width.ramp) == '[[0,1],[1,0]]'")
 
 
 OVERLAPS = """() => {
-    const parts = [...document.querySelectorAll('.bar, .left > *, .settings, .viewbar, .status, .sheets, .problems')]
+    const panels = '.bar, .left > *, .settings, .tray, .viewbar, .status, .sheets, .problems';
+    const parts = [...document.querySelectorAll(panels)]
         .filter((e) => e.checkVisibility() && e.getBoundingClientRect().height > 0)
         .map((e) => {
             const box = e.getBoundingClientRect(), clip = e.closest('.left')?.getBoundingClientRect() ?? box;
@@ -269,6 +273,25 @@ def test_one_thing_at_a_time_is_open_on_a_small_screen(opened: Any):
     assert not review.errors
 
 
+@pytest.mark.parametrize(("width", "height"), [(390, 844), (820, 1180), (1280, 800)])
+def test_the_tray_leaves_the_picture_clear_and_its_targets_are_large_enough(opened: Any, width: int, height: int):
+    review: Review = opened(viewport={"width": width, "height": height}, has_touch=True, is_mobile=True)
+    page = review.page
+    before = review.get("ringlet.viewer.clear")
+    page.keyboard.press("a")  # writes a note in the tray
+    review.laid_out()
+    tray, clear = page.locator(".tray").bounding_box(), review.get("ringlet.viewer.clear")
+    assert clear["y"] + clear["height"] <= tray["y"]
+    assert page.evaluate(OVERLAPS) == [] and page.evaluate(SMALL) == [] and page.evaluate(SPILLED) == []
+    tabs = page.get_by_role("tablist", name="Tray").bounding_box()
+    closing = page.get_by_role("button", name="Close the tray").bounding_box()
+    assert closing["y"] == pytest.approx(tabs["y"], abs=4)  # in the line of the tabs
+    page.keyboard.press("Escape")
+    page.get_by_role("button", name="Close the tray").click()
+    review.laid_out()
+    assert review.get("ringlet.viewer.clear") == before and not review.errors
+
+
 def test_light_camera_and_bookmarks_are_remembered(opened: Any):
     review: Review = opened()
     page = review.page
@@ -319,7 +342,7 @@ def test_two_looks_are_labelled_wiped_swapped_and_flipped(opened: Any):
     page.get_by_label("Compare with another look").select_option("saved")
     review.until("ringlet.viewer.compared && ringlet.viewer.hair.b.table")
     assert page.locator(".look-label b").all_inner_texts() == ["now", "as saved"]
-    page.get_by_label("Arrangement of the two looks").select_option("wipe")
+    page.get_by_label("Arrangement of the looks").select_option("wipe")
     wiped, middle = review.picture(), review.get("Math.round(ringlet.viewer.clear.x + ringlet.viewer.clear.width / 2)")
     assert different(wiped[:, :middle], now[:, :middle]) < 0.002 < different(wiped[:, middle:], now[:, middle:])
     page.get_by_label("Place of the wipe").focus()
@@ -328,8 +351,8 @@ def test_two_looks_are_labelled_wiped_swapped_and_flipped(opened: Any):
     assert different(review.picture(), now) < 0.002  # all that is clear is left of the line
     page.get_by_role("button", name="Swap the two sides").click()
     assert different(review.picture()[:, :900], now[:, :900]) > 0.005
-    page.get_by_label("Arrangement of the two looks").select_option("flip")
-    page.get_by_label("Arrangement of the two looks").blur()
+    page.get_by_label("Arrangement of the looks").select_option("flip")
+    page.get_by_label("Arrangement of the looks").blur()
     assert different(review.picture(), now) < 0.002
     page.keyboard.press("Tab")
     assert different(review.picture(), now) > 0.005

@@ -90,7 +90,7 @@ class App {
     };
     this.viewer.onDraw = (statistics) => this.status.drew(statistics);
     const keys = (names: string, does: string, ...all: string[]) =>
-      bindKey({ keys: names, does, on: plainKey(...all), run: (event) => void this.viewer.key(event.key) });
+      bindKey({ section: "View", keys: names, does, on: plainKey(...all), run: (event) => void this.viewer.key(event.key) });
     keys("Arrows", "orbit the camera", "ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown");
     keys("+ and -", "zoom in, zoom out", "+", "=", "-");
     keys("F", "frame all hair", "f");
@@ -129,7 +129,7 @@ class App {
     );
     const below = [viewbar.element, this.timeline.element, this.status.element, sheets.element];
     const panels = [...left.children, settings] as HTMLElement[];
-    new ClearArea([bar, this.problems.element], [compare.bar], panels, below, (clear) => {
+    new ClearArea([bar, this.problems.element], [compare.bar], panels, below, this.tray.element, (clear) => {
       this.viewer.setClear(clear);
       this.model.tell("clear");
     });

@@ -289,13 +289,13 @@ export interface Compare {
   side?: "b" | "c" | "d";
 }
 
-/** Drags a point of an isolated lock to a position [m]. */
+/** Drags a point of an isolated lock to a position [m]; the move fades over a fraction of the lock, ``falloff``. */
 export interface Drag {
   kind: "drag";
   lock: number;
   point: number;
   to: [number, number, number];
-  reach?: number;
+  falloff?: number;
   gesture: number;
   resting?: boolean;
 }

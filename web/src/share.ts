@@ -38,7 +38,7 @@ class SharedLook {
   ready = false;
   private readonly about = JSON.parse(text("about")) as About;
   private readonly turn = iconButton("turn", "Turn (space)", () => this.setTurning(!this.viewer.turntable));
-  private readonly status = h("p", { class: "status", role: "status" }, "The look is being unpacked …");
+  private readonly status = h("p", { class: "status", role: "status" }, "Unpacking the look …");
 
   constructor(root: HTMLElement) {
     const { name, view } = this.about;
@@ -52,8 +52,8 @@ class SharedLook {
         { class: "tools", role: "toolbar", "aria-label": "View" },
         this.turn,
         this.lights(),
-        iconButton("frame", "See all of it (F)", () => this.viewer.frame()),
-        iconButton("sun", "Dark or light", () => this.setTheme(this.theme === "dark" ? "light" : "dark")),
+        iconButton("frame", "Frame all hair (F)", () => this.viewer.frame()),
+        iconButton("sun", "Dark or light theme", () => this.setTheme(this.theme === "dark" ? "light" : "dark")),
       ),
     );
     root.append(this.shelf());

@@ -70,7 +70,7 @@ class LockManipulator:
         shift = _in_shape_frame(display.groom, row, at, np.array(message.to) + display.groom.origin - self._grabbed[2])
         moves = [move for move in self._moves_before(message.gesture, edits[index]) if any(move["by"])]
         by = [f"{1e3 * x:.2f} mm" for x in shift]
-        moves = [*moves, {"at": at, "by": by, "falloff": max(round(message.reach, 3), 0.001)}]
+        moves = [*moves, {"at": at, "by": by, "falloff": max(round(message.falloff, 3), 0.001)}]
         document.set([(["edit", index, "move"], moves)], message.gesture)
 
     def _moves_before(self, gesture: int, edit: dict[str, Any]) -> list[dict[str, Any]]:

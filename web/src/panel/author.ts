@@ -4,7 +4,7 @@ import { h } from "../dom";
 import { NAME, ownName } from "./people";
 
 /** A field for the name; changed: called after it was given. */
-export function authorField(changed: () => void): HTMLElement {
+export function authorField(changed: () => void): HTMLInputElement {
   const input = h("input", { type: "text", class: "author", placeholder: "Your name", "aria-label": "Your name", maxlength: 40, autocomplete: "nickname" });
   input.value = ownName();
   input.addEventListener("focus", () => (input.value = ownName()));

@@ -11,7 +11,7 @@ export class Bar {
   private readonly name = h("button", {
     type: "button",
     class: "file-name",
-    title: "What has changed since it was saved",
+    title: "Show what has changed since the last save",
   });
   private readonly undo = iconButton("undo", "Undo (Ctrl+Z)", () => this.model.say({ kind: "undo" }));
   private readonly redo = iconButton("redo", "Redo (Ctrl+Shift+Z)", () => this.model.say({ kind: "redo" }));
@@ -39,17 +39,17 @@ export class Bar {
       this.other,
       h("span", { class: "space" }),
       people,
-      iconButton("keys", "Keys (?)", showKeys, { class: "icon-button keys-list" }),
-      iconButton("sun", "Dark or light", setTheme),
+      iconButton("keys", "Keyboard shortcuts (?)", showKeys, { class: "icon-button keys-list" }),
+      iconButton("sun", "Dark or light theme", setTheme),
     );
     const tellHeight = () => document.documentElement.style.setProperty("--bar", `${this.element.offsetHeight}px`);
     new ResizeObserver(tellHeight).observe(this.element);
     for (const topic of ["document", "role", "welcome", "files", "compared", "snapshots"] as const) model.on(topic, () => this.update());
-    bindKey({ keys: "Ctrl+Z", does: "undo", on: command("z"), run: () => model.say({ kind: "undo" }) });
+    bindKey({ section: "File", keys: "Ctrl+Z", does: "undo", on: command("z"), run: () => model.say({ kind: "undo" }) });
     const redo = (event: KeyboardEvent) => command("z", true)(event) || command("y")(event);
-    bindKey({ keys: "Ctrl+Shift+Z", does: "redo", on: redo, run: () => model.say({ kind: "redo" }) });
-    bindKey({ keys: "Ctrl+S", does: "save", on: command("s"), run: () => this.saveAll(), anywhere: true });
-    bindKey({ keys: "Ctrl+O", does: "open another file", on: command("o"), run: () => openFile(model), anywhere: true });
+    bindKey({ section: "File", keys: "Ctrl+Shift+Z", does: "redo", on: redo, run: () => model.say({ kind: "redo" }) });
+    bindKey({ section: "File", keys: "Ctrl+S", does: "save", on: command("s"), run: () => this.saveAll(), anywhere: true });
+    bindKey({ section: "File", keys: "Ctrl+O", does: "open another file", on: command("o"), run: () => openFile(model), anywhere: true });
   }
 
   private get file(): File {

@@ -10,14 +10,14 @@ import { choice, HandTool, row } from "./hand_tool";
 import { bindKey, plainKey } from "./keys";
 
 const TOOLS = {
-  grab: "Takes guides along",
-  comb: "Draws guides along; they keep their lengths",
-  smooth: "Takes bends out (Shift with any brush)",
-  cut: "Cuts guides where they come into the ring",
-  lengthen: "Lets guides grow",
-  return: "Gives guides back to the recipe",
+  grab: "Moves guides with the brush",
+  comb: "Turns guides along the stroke and keeps their lengths",
+  smooth: "Straightens bends (also Shift with any brush)",
+  cut: "Cuts guides where they enter the ring",
+  lengthen: "Lengthens guides",
+  return: "Resets guides to those of the recipe",
   freeze: "Protects guides from all brushes",
-  thaw: "Ends the protection",
+  thaw: "Ends the protection by freeze",
 } as const;
 type Tool = keyof typeof TOOLS;
 
@@ -25,26 +25,26 @@ export class BrushTool extends HandTool {
   readonly ring = h("div", { class: "ring", hidden: true, "aria-hidden": "true" });
   private tool: Tool = "comb";
   private readonly tip: BrushTip;
-  private readonly all = h("button", { type: "button", class: "quiet" }, "Return all guides");
+  private readonly all = h("button", { type: "button", class: "quiet" }, "Reset all");
   private gesture = 0;
   private place: Vector3 | null = null;
   private way = new Vector3();
   private sending = 0;
 
   constructor(model: Model, viewer: Viewer) {
-    super(model, viewer, "sculpt", "Sculpt guides", "turn the brush off");
+    super(model, viewer, "sculpt", "Sculpt guides", "put the brush away");
     this.tip = new BrushTip("sculpt", viewer, this.ring, { radius: 20, strength: 1 }, () => this.on);
     this.element.append(
       choice("sculpt", TOOLS, this.tool, (tool) => (this.tool = tool)),
       ...this.tip.rows,
-      row("show the hair", this.hair),
+      row("show hair", this.hair),
       h("div", { class: "group" }, this.all, this.done),
       h("p", { class: "told" }, "The right button, Alt or the arrow keys orbit the camera; so does a finger that starts off the hair."),
     );
     this.hair.checked = true;
     this.tip.mirrored.addEventListener("change", () => this.update());
     this.all.addEventListener("click", () => model.say({ kind: "unsculpt" }));
-    bindKey({ keys: "B", does: "turn the brush on or off", on: plainKey("b"), run: () => this.show(!this.on) });
+    bindKey({ section: "Groom", keys: "B", does: "take the brush, or put it away", on: plainKey("b"), run: () => this.show(!this.on) });
     for (const topic of ["role", "guides"] as const) model.on(topic, () => this.update());
   }
 

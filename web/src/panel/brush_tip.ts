@@ -44,14 +44,14 @@ export class BrushTip {
       row("radius", this.radius.element, this.wide),
       row("strength", this.strength.element, this.strong),
       row("falloff", this.falloff),
-      row("pressure of the pen", this.pen),
+      row("pen pressure", this.pen),
       row("both sides", this.mirrored),
     ];
     this.radius.set(first.radius, { least: SMALLEST, most: LARGEST, step: 1 });
     this.strength.set(first.strength, { least: 0.05, most: 1, step: 0.05 });
     this.tell();
     const keyed = (event: KeyboardEvent) => active() && plainKey("[", "]")(event);
-    bindKey({ keys: "[ and ]", does: "smaller brush, larger brush", on: keyed, run: (event) => this.resize(event.key === "[" ? 1 / STEP : STEP) });
+    bindKey({ section: "Groom", keys: "[ and ]", does: "smaller brush, larger brush", on: keyed, run: (event) => this.resize(event.key === "[" ? 1 / STEP : STEP) });
     viewer.element.addEventListener("pointerleave", () => this.hide());
   }
 

@@ -10,24 +10,54 @@ const GAP = 14; // between a panel and what is next to it [pixels]
 export class ClearArea {
   private box = "";
 
-  /** above, below: bars at the edges; over: bars at the top of the picture; sides: panels in columns on both sides */
+  /**
+   * above, below: bars at the edges; over: bars at the top of the picture; sides: panels in columns on both sides;
+   * tray: what is laid over the lower part of what they leave clear
+   */
   constructor(
     private readonly above: HTMLElement[],
     private readonly over: HTMLElement[],
     private readonly sides: HTMLElement[],
     private readonly below: HTMLElement[],
+    private readonly tray: HTMLElement,
     private readonly changed: (clear: Box) => void,
   ) {
     const observer = new ResizeObserver(() => this.measure());
-    for (const element of [document.documentElement, ...above, ...over, ...sides, ...below]) observer.observe(element);
+    for (const element of [document.documentElement, ...above, ...over, ...sides, ...below, tray]) observer.observe(element);
   }
 
-  /** The largest rectangle that is between the columns, or below one of them or both. */
   private measure(): void {
     const { innerWidth, innerHeight } = window;
+    const { style } = document.documentElement;
+    const bottom = Math.min(innerHeight, ...this.below.flatMap(seen).map(({ top }) => top - GAP / 2));
+    const under = this.largest(bottom);
+    style.setProperty("--below", `${innerHeight - bottom + GAP / 2}px`);
+    style.setProperty("--tray-left", `${under.x}px`);
+    style.setProperty("--tray-right", `${innerWidth - under.x - under.width}px`);
+    style.setProperty("--tray-bottom", `${innerHeight - under.y - under.height}px`);
+    const [tray] = seen(this.tray);
+    const clear = tray ? this.largest(Math.min(bottom, tray.top - GAP / 2)) : under;
+    const begin = clear.y;
+    if (innerWidth <= SMALL)
+      for (const { height } of this.over.flatMap(seen)) {
+        clear.y += Math.round(height + GAP);
+        clear.height = Math.max(clear.height - Math.round(height + GAP), 1);
+      }
+    style.setProperty("--left", `${clear.x}px`);
+    style.setProperty("--right", `${innerWidth - clear.x - clear.width}px`);
+    style.setProperty("--over", `${begin}px`);
+    style.setProperty("--top", `${clear.y}px`);
+    style.setProperty("--bottom", `${innerHeight - clear.y - clear.height}px`);
+    const now = JSON.stringify(clear);
+    if (now === this.box) return;
+    this.box = now;
+    this.changed(clear);
+  }
+
+  /** The largest rectangle above a line that is between the columns, or below one of them or both. */
+  private largest(bottom: number): Box {
+    const { innerWidth } = window;
     const top = Math.max(0, ...this.above.flatMap(seen).map(({ bottom }) => bottom));
-    let bottom = Math.min(innerHeight, ...this.below.flatMap(seen).map(({ top }) => top - GAP / 2));
-    const edge = innerHeight - bottom + GAP / 2;
     let [left, right] = [0, innerWidth];
     let [underLeft, underRight] = [top, top];
     for (const box of this.sides.flatMap(seen)) {
@@ -52,24 +82,7 @@ export class ClearArea {
       between(0, underLeft, right),
       between(0, Math.max(underLeft, underRight), innerWidth),
     ];
-    const clear = places.reduce((best, one) => (fits(one) > fits(best) ? one : best));
-    const begin = clear.y;
-    if (innerWidth <= SMALL)
-      for (const { height } of this.over.flatMap(seen)) {
-        clear.y += Math.round(height + GAP);
-        clear.height = Math.max(clear.height - Math.round(height + GAP), 1);
-      }
-    const { style } = document.documentElement;
-    style.setProperty("--below", `${edge}px`);
-    style.setProperty("--left", `${clear.x}px`);
-    style.setProperty("--right", `${innerWidth - clear.x - clear.width}px`);
-    style.setProperty("--over", `${begin}px`);
-    style.setProperty("--top", `${clear.y}px`);
-    style.setProperty("--bottom", `${innerHeight - clear.y - clear.height}px`);
-    const now = JSON.stringify(clear);
-    if (now === this.box) return;
-    this.box = now;
-    this.changed(clear);
+    return places.reduce((best, one) => (fits(one) > fits(best) ? one : best));
   }
 }
 

@@ -24,7 +24,7 @@ export function choices(model: Model): HTMLElement[] {
   const files = model.files.filter((name) => name.endsWith(".recipe.toml") && name !== recipe);
   const snapshots = [...model.snapshots].reverse().map((one) => option(`snapshot:${one.id}`, snapshotLabel(one)));
   return [
-    option("now", "this moment"),
+    option("now", "the current look"),
     option("saved", "as saved"),
     ...(snapshots.length ? [h("optgroup", { label: "Snapshots" }, ...snapshots)] : []),
     ...(files.length ? [h("optgroup", { label: "Recipes" }, ...files.map((name) => option(`file:${name}`, name)))] : []),
@@ -46,8 +46,8 @@ export function compareWith(model: Model, choice: string): void {
 
 export class CompareBar {
   readonly element = h("section", { class: "compare", hidden: true, "aria-label": "Comparison" });
-  private readonly mode = h("select", { "aria-label": "Arrangement of the two looks" });
-  private readonly more = h("select", { "aria-label": "Compare with one more look" });
+  private readonly mode = h("select", { "aria-label": "Arrangement of the looks" });
+  private readonly more = h("select", { class: "more-looks", "aria-label": "Compare with one more look" });
   private readonly swapped = iconButton("swap", "Swap the two sides", () => this.swap());
   private readonly changes = h("button", { type: "button", class: "quiet", "aria-expanded": "false" }, "Changes");
   private readonly list = h("div", { class: "compare-changes scrolls", hidden: true, tabindex: 0, role: "region", "aria-label": "Settings that differ" });
@@ -85,7 +85,7 @@ export class CompareBar {
     this.element.append(this.stretch, this.labels, this.bar, this.legend, this.list);
     for (const topic of ["compared", "snapshots", "files", "role"] as const) model.on(topic, () => this.update());
     for (const topic of ["clear", "arranged"] as const) model.on(topic, () => this.update());
-    bindKey({ keys: "Tab", does: "flip between the looks that are compared", on: (event) => this.flips(event), run: () => this.flip() });
+    bindKey({ section: "Review", keys: "Tab", does: "flip between the compared looks", on: (event) => this.flips(event), run: () => this.flip() });
   }
 
   private flips(event: KeyboardEvent): boolean {
@@ -164,14 +164,14 @@ export class CompareBar {
     if (looks.arrangement === "flip") return [[looks.front, at, under, -50, clear.width]];
     const [first, second] = looks.order;
     return [
-      [first, at - 16, under, -100, clear.width / 2],
-      [second, at + 16, under, 0, clear.width / 2],
+      [first, at - 16, under, -100, clear.width / 2 - 24],
+      [second, at + 16, under, 0, clear.width / 2 - 24],
     ];
   }
 
   private label(side: Side, left: number, top: number, shift: number, room: number): HTMLElement {
     const { name, detail } = this.named(side);
-    const remove = iconButton("close", `Take ‘${name}’ out`, () => this.remove(side), {
+    const remove = iconButton("close", `Remove ‘${name}’ from the comparison`, () => this.remove(side), {
       disabled: this.viewer.looks.order.length < 3 || (side !== "a" && !this.model.role.leads),
       hidden: this.viewer.looks.order.length < 3,
     });
@@ -192,7 +192,7 @@ export class CompareBar {
     const names = [...new Set(settings.flatMap((one) => Object.keys(one)))];
     const rows = names.filter((name) => settings.some((one) => one[name] !== settings[0][name]));
     this.changes.textContent = `Changes (${rows.length})`;
-    if (!rows.length) return h("p", {}, "Their settings are the same.");
+    if (!rows.length) return h("p", {}, "The looks have the same settings.");
     const head = sides.map((side) => h("th", { scope: "col" }, this.named(side).name));
     const cell = (value: string | undefined) => h("td", {}, value ?? "–");
     return h(

@@ -33,7 +33,7 @@ export class DrawTool extends HandTool {
     this.element.append(
       this.words,
       this.lifts,
-      row("show the hair", this.hair),
+      row("show hair", this.hair),
       h("div", { class: "group" }, this.done),
     );
     this.endLift.set(0, { least: 0, most: 150, step: 1 });

@@ -26,7 +26,7 @@ export abstract class Field {
     this.label = h("label", { for: this.id, title: about }, setting.label);
     this.reset = iconButton(
       "reset",
-      `Back to the default of ${setting.label}`,
+      `Reset ${setting.label} to its default`,
       () => this.put(this.targets.map((target) => [target, null])),
       { class: "icon-button reset" },
     );

@@ -10,10 +10,10 @@ export function showChanges(model: Model): void {
       const kind = sign === "+" ? "ins" : sign === "-" ? "del" : "span";
       return h(kind, { class: "change" }, `${sign} ${line}`);
     });
-    const none = h("p", {}, "Nothing has changed since it was saved.");
+    const none = h("p", {}, "No unsaved changes.");
     return h("section", {}, h("h3", {}, document.name), lines.length ? h("pre", { class: "changes", tabindex: 0 }, ...lines) : none);
   });
-  const revert = h("button", { type: "button", class: "quiet" }, "Back to what was saved");
+  const revert = h("button", { type: "button", class: "quiet" }, "Revert to the saved file");
   const dialog = openDialog("Changes", ...lists, h("p", {}, revert));
   revert.addEventListener("click", () => {
     model.say({ kind: "revert" });
@@ -67,7 +67,7 @@ function askUnsaved(model: Model, name: string, open: (name: string, discard: bo
   const dialog = openDialog(
     "Unsaved changes",
     h("p", {}, `${model.welcome?.name} has unsaved changes.`),
-    h("div", { class: "group" }, button("Save them", save, "primary"), button("Discard them", () => open(name, true))),
+    h("div", { class: "group" }, button("Save and open", save, "primary"), button("Discard and open", () => open(name, true))),
   );
 }
 
@@ -83,14 +83,14 @@ export function saveAs(model: Model, file: File): void {
   const form = h(
     "form",
     { class: "save-form" },
-    h("p", {}, `A new file in the folder of ${model.documents[file]?.name ?? "the file"}; the review goes on with it.`),
+    h("p", {}, `A new file in the folder of ${model.documents[file]?.name ?? "the file"}; the review continues with it.`),
     h("label", { for: "save-name" }, "Name"),
     name,
     file === "recipe"
       ? h(
           "div",
           { class: "field-head" },
-          h("label", { for: "save-variant" }, "As a variant: a small file with the changes alone"),
+          h("label", { for: "save-variant" }, "As a variant: a small file with only the changes"),
           variant,
         )
       : null,

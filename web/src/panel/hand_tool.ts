@@ -31,7 +31,7 @@ export abstract class HandTool {
     element.addEventListener("pointermove", (event) => this.on && this.move(event), { capture: true });
     for (const end of ["pointerup", "pointercancel"] as const)
       element.addEventListener(end, () => this.lift(), { capture: true });
-    bindKey({ keys: "Escape", does: ends, on: (event) => this.on && event.key === "Escape", run: () => this.show(false) });
+    bindKey({ section: "Groom", keys: "Escape", does: ends, on: (event) => this.on && event.key === "Escape", run: () => this.show(false) });
     model.on("role", () => this.element.toggleAttribute("inert", !model.role.leads));
   }
 

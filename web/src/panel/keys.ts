@@ -3,7 +3,11 @@
 import { h } from "../dom";
 import { openDialog } from "./dialog";
 
+/** Sections of the list, in their order. */
+const SECTIONS = ["File", "View", "Groom", "Review", "Frames"] as const;
+
 interface Key {
+  section: (typeof SECTIONS)[number];
   keys: string; // as the list shows them
   does: string;
   /** Whether an event is this key; Ctrl or Command is in `with`. */
@@ -16,11 +20,11 @@ interface Key {
 const bound: Key[] = [];
 
 /** Keys that a control which has the focus takes itself. */
-const OWN = [
-  ["Arrows, Shift with arrows", "change a number that has the focus; finer"],
-  ["Arrows, Enter, Delete", "move a point of a ramp, add one, remove it"],
-  ["Arrows", "move a point of an isolated lock"],
-  ["Escape", "discard what was typed; close a dialog"],
+const OWN: [Key["section"], string, string][] = [
+  ["File", "Escape", "discard typed text, or close a dialog"],
+  ["Groom", "Arrows, Shift with arrows", "change the number that has the focus; finer"],
+  ["Groom", "Arrows, Enter, Delete", "move a point of a ramp, add one, remove it"],
+  ["Groom", "Arrows", "move a handle of an isolated lock"],
 ];
 
 export function bindKey(key: Key): void {
@@ -68,11 +72,15 @@ export const plainKey =
     !event.ctrlKey && !event.metaKey && keys.includes(event.key.length === 1 ? event.key.toLowerCase() : event.key);
 
 export function showKeys(): void {
-  const uses = new Map<string, Set<string>>(); // tools share keys: one row lists them
-  for (const [keys, does] of [...bound.map(({ keys, does }) => [keys, does]), ...OWN])
-    uses.set(keys, (uses.get(keys) ?? new Set()).add(does));
-  const rows = [...uses].map(([keys, does]) => h("tr", {}, h("th", { scope: "row" }, keys), h("td", {}, [...does].join("; "))));
-  openDialog("Keys", h("div", { class: "scrolls", tabindex: 0, role: "region", "aria-label": "List of keys" }, h("table", { class: "keys" }, h("tbody", {}, ...rows))));
+  const all = [...bound.map(({ section, keys, does }) => [section, keys, does]), ...OWN];
+  const tables = SECTIONS.map((title) => {
+    const uses = new Map<string, Set<string>>(); // tools share keys: one row lists them
+    for (const [section, keys, does] of all) if (section === title) uses.set(keys, (uses.get(keys) ?? new Set()).add(does));
+    const rows = [...uses].map(([keys, does]) => h("tr", {}, h("th", { scope: "row" }, keys), h("td", {}, [...does].join("; "))));
+    return h("section", {}, h("h3", {}, title), h("table", { class: "keys" }, h("tbody", {}, ...rows)));
+  });
+  const list = h("div", { class: "scrolls", tabindex: 0, role: "region", "aria-label": "Keyboard shortcuts" }, h("div", { class: "key-sections" }, ...tables));
+  openDialog("Keyboard shortcuts", list).querySelector<HTMLElement>("footer button")!.focus();
 }
 
-bindKey({ keys: "?", does: "this list", on: plainKey("?"), run: showKeys });
+bindKey({ section: "File", keys: "?", does: "show this list", on: plainKey("?"), run: showKeys });

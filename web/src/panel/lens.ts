@@ -15,7 +15,7 @@ export class Lens {
   readonly button = iconButton("lens", "Camera, light and sheet", () => {}, { popovertarget: ID });
   readonly element = h("div", { id: ID, class: "lens", popover: "auto", role: "dialog", "aria-label": "Camera, light and sheet" });
   private readonly length = slider("Focal length", 24, 200, 1, "mm");
-  private readonly turn = slider("Turn of the lights", -180, 180, 5, "°");
+  private readonly turn = slider("Light rotation", -180, 180, 5, "°");
   private readonly cameras = h("select", { "aria-label": "Camera of the scene" });
   private readonly marks = h("div", { class: "bookmarks", role: "group", "aria-label": "Bookmarks" });
 
@@ -34,7 +34,7 @@ export class Lens {
     });
     this.cameras.addEventListener("change", () => this.take(Number(this.cameras.value)));
     const save = h("button", { type: "button", class: "quiet", onclick: () => this.saveSheet() }, "Save a sheet of five angles");
-    save.title = "Front, three-quarter, both sides and back in one picture, with the open notes below";
+    save.title = "Front, three-quarter view, both sides and back in one picture, with the open notes below";
     this.element.append(
       h("h2", {}, "Camera"),
       this.length.element,
@@ -74,7 +74,7 @@ export class Lens {
     const marks = Array.from({ length: 9 }, (_, k) => {
       const slot = String(k + 1);
       const kept = slot in model.views;
-      const label = kept ? `Recall bookmark ${slot}; with Shift, replace it` : `Keep bookmark ${slot}`;
+      const label = kept ? `Recall bookmark ${slot}; with Shift, replace it` : `Store bookmark ${slot}`;
       const press = (event: MouseEvent) => this.look.bookmark(slot, event.shiftKey || !kept);
       return h("button", { type: "button", class: `quiet${kept ? " kept" : ""}`, title: label, "aria-label": label, onclick: press }, slot);
     });

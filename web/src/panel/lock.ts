@@ -14,14 +14,14 @@ const NS = "http://www.w3.org/2000/svg";
 const STILL = 4; // a pointer that moves less has clicked [pixels]
 
 export class LockTool {
-  readonly element = h("section", { class: "panel lock", hidden: true, "aria-label": "Chosen lock" });
+  readonly element = h("section", { class: "panel lock", hidden: true, "aria-label": "Selected lock" });
   readonly handles = document.createElementNS(NS, "svg");
   private readonly title = h("h2", {});
   private readonly isolate = h("button", { type: "button", class: "quiet" }, "Isolate");
   private readonly back = h("button", { type: "button", class: "quiet" }, "Reset lock");
-  private readonly reach = h("input", { type: "range", min: 0.05, max: 0.8, step: 0.05, value: 0.3, id: "lock-reach" });
+  private readonly falloff = h("input", { type: "range", min: 0.05, max: 0.8, step: 0.05, value: 0.3, id: "lock-falloff" });
   private readonly alone = h("input", { type: "checkbox", role: "switch", class: "switch", id: "lock-alone" });
-  private readonly aloneLabel = h("label", { for: "lock-alone", title: "Settings on the right are those of the chosen locks" });
+  private readonly aloneLabel = h("label", { for: "lock-alone", title: "Settings on the right are those of the selected locks" });
   private readonly own = h("ul", { class: "own", "aria-label": "Values of this lock alone" });
   private readonly edited = h("ul", { class: "own", "aria-label": "Edited locks" });
   private readonly lasso = document.createElementNS(NS, "polyline");
@@ -42,7 +42,7 @@ export class LockTool {
     this.element.append(
       this.title,
       h("div", { class: "group" }, this.isolate, this.back, close),
-      h("div", { class: "field-head reach" }, h("label", { for: "lock-reach", title: "How much of the lock comes along with a point" }, "reach"), this.reach),
+      h("div", { class: "field-head falloff" }, h("label", { for: "lock-falloff", title: "Fraction of the length of the lock over which the move of a handle fades" }, "falloff"), this.falloff),
     );
     this.element.append(
       h(
@@ -57,11 +57,11 @@ export class LockTool {
     this.lasso.classList.add("lasso");
     this.handles.append(this.lasso);
     this.listenForLasso();
-    bindKey({ keys: "N and P", does: "choose the next lock, the previous one", on: plainKey("n", "p"), run: (event) => this.step(event.key.toLowerCase() === "n" ? 1 : -1) });
+    bindKey({ section: "Groom", keys: "N and P", does: "select the next lock, the previous one", on: plainKey("n", "p"), run: (event) => this.step(event.key.toLowerCase() === "n" ? 1 : -1) });
     this.alone.addEventListener("change", () => this.scope(this.alone.checked));
     this.isolate.addEventListener("click", () => model.say({ kind: "isolate", locks: this.ids }));
     this.back.addEventListener("click", () => model.say({ kind: "isolate", locks: this.isolatedIds, out: false }));
-    this.reach.style.setProperty("--part", "33%");
+    this.falloff.style.setProperty("--part", "33%");
     const canvas = viewer.renderer.domElement;
     let pressed = { x: 0, y: 0 };
     canvas.addEventListener("pointerdown", (event) => {
@@ -135,7 +135,7 @@ export class LockTool {
         const take = () => this.model.say({ kind: "set", changes, gesture: this.model.newGesture(), resting: true });
         const some = values.length < this.rows.length ? `, of ${values.length} of ${this.rows.length}` : "";
         const different = [...new Set(values.map(([, value]) => String(value)))].join(", ");
-        return h("li", {}, h("span", {}, `${setting} ${different}${some}`), iconButton("bin", `Not its own ${setting}`, take));
+        return h("li", {}, h("span", {}, `${setting} ${different}${some}`), iconButton("bin", `Remove its own ${setting}`, take));
       }),
     );
   }
@@ -289,7 +289,7 @@ export class LockTool {
     this.back.toggleAttribute("hidden", !isolated);
     this.back.textContent = this.rows.length > 1 ? "Reset locks" : "Reset lock";
     this.listEdited();
-    this.element.querySelector(".reach")!.toggleAttribute("hidden", !this.isolated);
+    this.element.querySelector(".falloff")!.toggleAttribute("hidden", !this.isolated);
     this.element.toggleAttribute("inert", !this.model.role.leads);
     this.tellOwn();
     this.place();
@@ -353,7 +353,7 @@ export class LockTool {
         lock: this.id,
         point: this.index(HANDLES[index]),
         to: [to.x, to.y, to.z],
-        reach: Number(this.reach.value),
+        falloff: Number(this.falloff.value),
         gesture: this.gesture,
         resting,
       });

@@ -55,6 +55,7 @@ export class Look {
     addEventListener("pagehide", () => this.store());
     const digit = (event: KeyboardEvent) => /^Digit[1-9]$/.test(event.code) && !event.ctrlKey && !event.metaKey;
     bindKey({
+      section: "View",
       keys: "1 … 9, Shift with 1 … 9",
       does: "recall a bookmark of camera, light and color; store one",
       on: digit,
@@ -192,12 +193,12 @@ export class Look {
     if (keep) {
       model.views[slot] = this.state; // the server says it again
       model.say({ kind: "keep_view", slot: Number(slot), look: this.state });
-      this.notices.show(`Bookmark ${slot} is kept`);
+      this.notices.show(`Bookmark ${slot} is stored`);
       model.tell("views");
     } else if (kept) {
       this.apply(kept, false);
       this.changed();
-    } else this.notices.show(`There is no bookmark ${slot}; Shift+${slot} keeps one`);
+    } else this.notices.show(`There is no bookmark ${slot}; Shift+${slot} stores one`);
   }
 
   /** Keeps light, color and lens with the recipe, once the page that leads has changed them. */

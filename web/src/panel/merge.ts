@@ -20,7 +20,7 @@ export function openMerge(model: Model, { file, differences }: Problem): void {
     h("thead", {}, h("tr", {}, ...["setting", "before", "mine", "theirs"].map((one) => h("th", {}, one)))),
     h("tbody", {}, ...rows.map((row) => row.element)),
   );
-  const about = "Mine is what is seen here, theirs what is on disk. What only one side changed is chosen already.";
+  const about = "Mine are the settings of this review, theirs those on disk. What only one side changed is already chosen.";
   const dialog = openDialog(`Versions of ${name}`, h("p", {}, about), h("div", { class: "scrolls", tabindex: 0, role: "region", "aria-label": "Settings that differ" }, table), merge);
   dialog.addEventListener("change", update);
   merge.addEventListener("click", () => {

@@ -58,7 +58,7 @@ export class DrawnField extends Field {
 /** The value in named regions of the scalp. */
 export class RegionsField extends Field {
   private readonly rows = h("div", { class: "regions" });
-  private readonly add = h("select", { "aria-label": "Another value in a region" });
+  private readonly add = h("select", { "aria-label": "Add a value for a region" });
 
   constructor(model: Model, file: File, place: Place, setting: Setting) {
     super(model, file, place, setting);
@@ -96,7 +96,7 @@ export class RegionsField extends Field {
         number.set(value * factor);
         const label = h("span", { class: "label" }, region);
         number.scrubbedBy(label);
-        const remove = iconButton("bin", `Not another value in ${region}`, () => this.give(region, null));
+        const remove = iconButton("bin", `Remove the value for ${region}`, () => this.give(region, null));
         return h("div", { class: "field-head" }, label, number.element, remove);
       }),
     );

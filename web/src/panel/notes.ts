@@ -55,8 +55,8 @@ export class Notes {
     this.tab = { title: "Notes", element: this.list, actions: [add], count: () => model.notes.filter((one) => !one.resolved).length };
     tray.add(this.tab);
     for (const topic of ["notes", "role"] as const) model.on(topic, () => this.update());
-    bindKey({ keys: "A", does: "write a note, with arrows and lines over the picture", on: plainKey("a"), run: () => this.begin() });
-    bindKey({ keys: "Escape", does: "discard the note that is being written", on: (event) => this.draft !== null && event.key === "Escape", run: () => this.end() });
+    bindKey({ section: "Review", keys: "A", does: "write a note, with arrows and lines over the picture", on: plainKey("a"), run: () => this.begin() });
+    bindKey({ section: "Review", keys: "Escape", does: "discard the note that is being written", on: (event) => this.draft !== null && event.key === "Escape", run: () => this.end() });
     this.marks.addEventListener("pointerdown", (event) => this.press(event));
     this.marks.addEventListener("pointermove", (event) => this.drag(event));
     for (const name of ["pointerup", "pointercancel"] as const) this.marks.addEventListener(name, () => this.release());

@@ -37,7 +37,7 @@ export class NumberField extends Field {
     this.number.scrubbedBy(this.label);
     if (setting.name === "seed")
       this.number.element.append(
-        iconButton("dice", "Another seed", () => this.send(Math.floor(Math.random() * 1e6), true)),
+        iconButton("dice", "New seed", () => this.send(Math.floor(Math.random() * 1e6), true)),
       );
     this.element.append(this.head(this.number.element), this.slider.element);
     this.inner = setting.inner.map((one) => makeField(model, file, [...place, one.name], one));

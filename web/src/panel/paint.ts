@@ -9,10 +9,10 @@ import { BrushTip } from "./brush_tip";
 import { choice, HandTool, row } from "./hand_tool";
 
 const TOOLS = {
-  add: "Goes to white: more of it",
-  remove: "Goes to black: less of it (also Ctrl with a brush)",
-  smooth: "Goes to the mean around (also Shift with a brush)",
-  comb: "Goes to the direction in which the brush moves",
+  add: "Paints towards white: more of it",
+  remove: "Paints towards black: less of it (also Ctrl with a brush)",
+  smooth: "Evens out to the mean around (also Shift with a brush)",
+  comb: "Paints the direction in which the brush moves",
 } as const;
 type Tool = keyof typeof TOOLS;
 const NUMBERS: Tool[] = ["add", "remove", "smooth"];
@@ -34,7 +34,7 @@ export class PaintTool extends HandTool {
     this.element.append(
       choice("paint", TOOLS, this.tool, (tool) => (this.tool = tool)),
       ...this.tip.rows,
-      row("show the hair", this.hair),
+      row("show hair", this.hair),
       h("div", { class: "group" }, this.done),
       h("p", { class: "told" }, "The right button, Alt or the arrow keys orbit the camera."),
     );

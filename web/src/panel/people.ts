@@ -54,8 +54,8 @@ export class People {
       iconButton("link", "Copy a link to this view (L)", () => this.look().copyLink()),
     );
     this.questions.append(this.nameless, this.request);
-    bindKey({ keys: "L", does: "copy a link to this view", on: plainKey("l"), run: () => this.look().copyLink() });
-    bindKey({ keys: "G", does: "follow the page that leads, or stop", on: plainKey("g"), run: () => this.turn() });
+    bindKey({ section: "Review", keys: "L", does: "copy a link to this view", on: plainKey("l"), run: () => this.look().copyLink() });
+    bindKey({ section: "Review", keys: "G", does: "follow the page that leads, or stop", on: plainKey("g"), run: () => this.turn() });
     for (const part of [this.faces, this.follow, this.lead]) part.hidden = true;
     model.on("role", () => this.update());
   }
@@ -124,7 +124,7 @@ export class People {
     this.nameless.hidden = !others || this.declined || localStorage.getItem(NAME) !== null;
     this.asked.placeholder = own?.name ?? "";
     this.request.hidden = !role.asked;
-    this.asking.textContent = `${role.asking} asks to edit. Without an answer, and without an edit for 10 seconds, they may.`;
+    this.asking.textContent = `${role.asking} asks to edit. After 10 seconds without an answer and without an edit, they can.`;
 
     this.follow.hidden = role.leads || !leader;
     this.follow.textContent = follows ? "Stop following" : `Follow ${leader?.name ?? ""}`;
@@ -153,7 +153,7 @@ function face(person: Person): HTMLElement {
 
 function does(person: Person): string {
   if (person.leads) return "edits";
-  return person.follows ? "follows" : "looks on their own";
+  return person.follows ? "follows" : "looks elsewhere";
 }
 
 function row(person: Person): HTMLElement {

@@ -14,7 +14,7 @@ const SIZES: Record<string, [number, number]> = {
 
 export function savePicture(viewer: Viewer, name: string): void {
   const { clientWidth, clientHeight } = viewer.element;
-  const size = h("select", { id: "picture-size" }, h("option", { value: "" }, `as seen: ${clientWidth} × ${clientHeight}`));
+  const size = h("select", { id: "picture-size" }, h("option", { value: "" }, `as displayed: ${clientWidth} × ${clientHeight}`));
   for (const label of Object.keys(SIZES)) size.append(h("option", { value: label }, label));
   const clear = h("input", { type: "checkbox", id: "picture-clear", class: "switch", role: "switch" });
   const form = h(
@@ -22,7 +22,7 @@ export function savePicture(viewer: Viewer, name: string): void {
     { class: "save-form" },
     h("label", { for: size.id }, "Size in pixels"),
     size,
-    h("div", { class: "field-head" }, h("label", { for: clear.id }, "Without the wall, transparent"), clear),
+    h("div", { class: "field-head" }, h("label", { for: clear.id }, "Transparent background"), clear),
     h("button", { class: "primary" }, "Save"),
   );
   const dialog = openDialog("Save picture", form);

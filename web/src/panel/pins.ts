@@ -43,7 +43,7 @@ export class FieldTools {
 
   showPinned(on: boolean): void {
     const { label } = this.field.setting;
-    this.pin.title = on ? `Unpin ${label}` : `Pin ${label}: keep it at first sight`;
+    this.pin.title = on ? `Unpin ${label}` : `Pin ${label}: always show it`;
     this.pin.setAttribute("aria-label", this.pin.title);
     this.pin.setAttribute("aria-pressed", String(on));
   }

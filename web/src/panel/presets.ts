@@ -6,6 +6,7 @@ import type { Model } from "../model";
 import type { Preset } from "../protocol";
 import type { Viewer } from "../view/viewer";
 import { openDialog } from "./dialog";
+import { bindKey } from "./keys";
 import { Slider } from "./slider";
 
 const AFTER = 160; // time that a pointer rests on a preset before it is shown [ms]
@@ -43,7 +44,8 @@ export class PresetTool {
         h("button", { type: "button", class: "quiet", onclick: () => this.show(false) }, "Done"),
       ),
     );
-    this.element.addEventListener("keydown", (event) => event.key === "Escape" && this.show(false));
+    const closes = (event: KeyboardEvent) => !this.element.hidden && event.key === "Escape";
+    bindKey({ section: "Groom", keys: "Escape", does: "close looks and presets", on: closes, run: () => this.show(false) });
     model.on("presets", () => this.fill());
     model.on("role", () => this.element.toggleAttribute("inert", !model.role.leads));
     model.on("document", () => this.update());
@@ -112,7 +114,7 @@ export class PresetTool {
     this.taken = preset.name;
     this.gesture = this.model.newGesture();
     this.part.set(1, { least: 0, most: 1, step: 0.01 });
-    this.label.textContent = `as much of ‘${preset.title}’`;
+    this.label.textContent = `amount of ‘${preset.title}’`;
     this.say(1, true);
     this.mark();
   }
@@ -142,7 +144,7 @@ export class PresetTool {
       const box = h("input", { type: "checkbox", class: "switch", role: "switch", id: `preset-${table}`, name: table, checked: table === this.model.chosen.place[0] });
       return h("div", { class: "field-head" }, h("label", { for: box.id }, table), box);
     });
-    const form = h("form", { class: "save-form" }, h("label", { for: name.id }, "Name"), name, h("p", {}, "What it holds:"), ...boxes, h("button", { class: "primary" }, "Keep"));
+    const form = h("form", { class: "save-form" }, h("label", { for: name.id }, "Name"), name, h("p", {}, "Tables in the preset"), ...boxes, h("button", { class: "primary" }, "Keep"));
     const dialog = openDialog("Keep a preset", form);
     form.addEventListener("submit", (event) => {
       event.preventDefault();

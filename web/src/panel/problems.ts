@@ -68,7 +68,7 @@ export class ProblemBar {
     if (!progress) return;
     const stage = progress.stage.replaceAll("_", " ");
     this.progress.replaceChildren(
-      h("p", {}, `The groom is being made: ${stage}`),
+      h("p", {}, `Making the groom: ${stage}`),
       h("progress", { max: 1, value: progress.done, "aria-label": "Progress of the groom" }),
       h("button", { type: "button", class: "quiet", onclick: () => this.model.say({ kind: "cancel" }) }, "Cancel"),
     );

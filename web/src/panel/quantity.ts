@@ -36,7 +36,7 @@ export function parseQuantity(text: string, kind: Kind, current: number | null):
   }
   reader.end();
   const value = Number(typed.value.toPrecision(10));
-  if (!Number.isFinite(value)) throw new Refusal(`'${text.trim()}' is no number`);
+  if (!Number.isFinite(value)) throw new Refusal(`'${text.trim()}' is not a number`);
   if (kind.whole && !Number.isInteger(value)) {
     if (relative) return { value: Math.round(value), unit: "" };
     throw new Refusal(`${value} is not a whole number`);
@@ -123,7 +123,7 @@ class Reader {
     const digits = this.take(/^[\d.,]+(?:[eE][-+]?\d+)?/);
     if (digits === null) {
       const rest = this.text.slice(this.at).trim();
-      throw new Refusal(rest ? `'${rest}' is no number` : "a number is missing");
+      throw new Refusal(rest ? `'${rest}' is not a number` : "a number is missing");
     }
     return decimal(digits);
   }
@@ -137,7 +137,7 @@ class Reader {
     const [from, to] = unit in METRES && shown in METRES ? [METRES[unit], METRES[shown]] : [DEGREES[unit], DEGREES[shown]];
     if (from && to) return { value: (value * from) / to, unit };
     if (unit.replace("²", "2") === shown.replace("²", "2")) return { value, unit: shown };
-    throw new Refusal(shown ? `'${unit}' is no unit here; the value is in ${shown}` : `'${unit}': the value has no unit`);
+    throw new Refusal(shown ? `'${unit}' is not a unit of this setting; the value is in ${shown}` : `'${unit}': the value has no unit`);
   }
 }
 
@@ -150,6 +150,6 @@ function decimal(digits: string): number {
     throw new Refusal(`'${digits}' may be ${a}.${b} or ${a}${b}; write one of them`);
   }
   const value = Number(digits.replace(",", "."));
-  if (Number.isNaN(value)) throw new Refusal(`'${digits}' is no number`);
+  if (Number.isNaN(value)) throw new Refusal(`'${digits}' is not a number`);
   return value;
 }

@@ -11,15 +11,15 @@ const NS = "http://www.w3.org/2000/svg";
 
 /** Shapes to begin with. */
 const PRESETS: Record<string, Ramp> = {
-  "the same all along": [
+  "constant": [
     [0, 1],
     [1, 1],
   ],
-  "grows to the tip": [
+  "increases to the tip": [
     [0, 0],
     [1, 1],
   ],
-  "fades to the tip": [
+  "decreases to the tip": [
     [0, 1],
     [1, 0],
   ],
@@ -89,7 +89,7 @@ export class RampEditor {
 
   private offer(): void {
     this.shapes.replaceChildren(
-      h("option", { value: "" }, "shape …"),
+      h("option", { value: "" }, "preset …"),
       ...Object.keys(PRESETS).map((name) => h("option", { value: name }, name)),
       h("option", { value: "copy" }, "copy this curve"),
       h("option", { value: "paste", disabled: !copied }, "paste the copied curve"),

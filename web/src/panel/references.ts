@@ -48,7 +48,7 @@ export class References {
       if (files.length && !typing(event)) void this.addAll(files);
     });
     model.on("clear", () => this.placeAll());
-    bindKey({ keys: "Escape", does: "put the eyedropper away", on: (event) => this.picking && event.key === "Escape", run: () => this.pick(false) });
+    bindKey({ section: "Review", keys: "Escape", does: "put the eyedropper away", on: (event) => this.picking && event.key === "Escape", run: () => this.pick(false) });
     this.update();
   }
 
@@ -60,7 +60,7 @@ export class References {
         this.model.say({ kind: "add_reference", name: file.name, picture });
         this.tray.open(this.tab);
       } catch {
-        this.notices.show(`${file.name} is no picture that this browser can read`, "bad");
+        this.notices.show(`${file.name} cannot be read; add a picture, such as PNG or JPEG`, "bad");
       }
     }
   }

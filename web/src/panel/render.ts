@@ -48,7 +48,7 @@ export class RenderPanel {
     const bar = h("div", { class: "render-bar" }, this.state, this.samples, this.stopping, this.saving, close);
     this.element = h("section", { class: "render", hidden: true, "aria-label": "Render" }, this.frame, this.line.element, bar);
     viewbar.element.append(iconButton("render", "Render (R)", () => this.start()));
-    bindKey({ keys: "R", does: "render the picture, path-traced", on: plainKey("r"), run: () => this.start() });
+    bindKey({ section: "View", keys: "R", does: "render the picture, path-traced", on: plainKey("r"), run: () => this.start() });
     model.on("look", () => this.followLook());
     model.on("compared", () => viewer.compared && this.close());
     model.on("numbers", () => this.tell());

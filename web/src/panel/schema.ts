@@ -18,6 +18,9 @@ const NAMED: Record<string, Named> = {
   part_lines: "curves",
 };
 
+/** Labels of settings whose name in the file does not read as one. */
+const LABELS: Record<string, string> = { youngs_modulus: "Young's modulus" };
+
 export interface Setting {
   name: string;
   label: string;
@@ -111,7 +114,7 @@ export class Schemas {
     const real = parts.filter((part) => part["type"] !== "null");
     const setting: Setting = {
       name,
-      label: name.replaceAll("_", " "),
+      label: LABELS[name] ?? name.replaceAll("_", " "),
       description: String(given["description"] ?? ""),
       kind: "other",
       unit: String(given["unit"] ?? unitIn(String(given["description"] ?? ""))),

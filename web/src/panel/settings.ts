@@ -65,13 +65,13 @@ export class Settings {
       this.tools.clear();
       for (const field of this.fields) this.tools.set(field, this.makeTools(field));
       const nothing = locks.length > 0 && !settings.length;
-      const of = locks.length === 1 ? "the chosen lock" : `${locks.length} locks`;
+      const of = locks.length === 1 ? "the selected lock" : `${locks.length} locks`;
       this.element.replaceChildren(
         this.search.input,
         this.search.results,
         h("h2", {}, stageTitle(this.model)),
         locks.length ? h("p", { class: "alone" }, `of ${of} alone`) : "",
-        nothing ? h("p", { class: "told" }, "No setting of this stage can differ for a single lock.") : "",
+        nothing ? h("p", { class: "told" }, "This stage has no setting that can vary by lock.") : "",
         h("div", { class: "fields" }, ...this.fields.map((field) => field.element)),
         this.more,
       );

@@ -34,7 +34,7 @@ export class Snapshots {
       this.button.hidden = take.hidden = !model.documents.recipe;
     });
     model.on("numbers", () => this.waiting && model.settled && this.take());
-    bindKey({ keys: "S", does: "take a snapshot", on: plainKey("s"), run: () => this.take() });
+    bindKey({ section: "Review", keys: "S", does: "take a snapshot", on: plainKey("s"), run: () => this.take() });
     this.update();
   }
 
@@ -77,9 +77,9 @@ export class Snapshots {
     const buttons = h(
       "span",
       { class: "group" },
-      iconButton("load", "Load: set the recipe to it", () => model.say({ kind: "load_snapshot", id: one.id }), { disabled: !leads }),
-      iconButton("camera", "Look from where it was taken", () => this.look.apply(one.look, false)),
-      iconButton("bin", "Delete it", () => this.askDelete(one, title)),
+      iconButton("load", "Load: use its settings", () => model.say({ kind: "load_snapshot", id: one.id }), { disabled: !leads }),
+      iconButton("camera", "Use its camera and light", () => this.look.apply(one.look, false)),
+      iconButton("bin", "Delete", () => this.askDelete(one, title)),
     );
     const when = h("time", { datetime: one.time, title: new Date(one.time).toLocaleString() }, shortTime(one.time));
     const head = h("div", { class: "card-head" }, h("span", { class: "by" }, one.author, one.author ? " · " : "", when), buttons);

@@ -21,6 +21,7 @@ export class Stack {
     model.on("document", () => this.update());
     model.on("chosen", () => this.update());
     model.on("role", () => this.update());
+    new ResizeObserver(() => this.element.querySelector(".chosen")?.scrollIntoView({ block: "nearest" })).observe(this.element); // a tool takes its room
   }
 
   update(): void {
@@ -77,7 +78,7 @@ export class Stack {
       isShape && role.leads && index < last
         ? iconButton("down", `Move ${stage.name} down`, () => this.move(index, index + 1))
         : null,
-      canMute ? iconButton("solo", `Only ${stage.name}`, () => this.solo(stage, all), {
+      canMute ? iconButton("solo", `Solo ${stage.name}`, () => this.solo(stage, all), {
             class: "icon-button solo",
             "aria-pressed": String(stage.solo),
           }) : null,
@@ -90,7 +91,7 @@ export class Stack {
               class: "icon-button mute",
               "aria-pressed": String(stage.muted),
               "aria-label": `Mute ${stage.name}`,
-              title: stage.muted ? "Let it act again" : "Mute: show the groom without it",
+              title: stage.muted ? "Unmute" : "Mute: show the groom without it",
               onclick: () => this.mute(key, all),
             },
             icon(stage.muted ? ICONS.hidden : ICONS.eye),

@@ -60,7 +60,7 @@ export class Status {
     this.set("hairs", count(numbers.hairs));
     this.set("groom", `${numbers.groom_ms.toFixed(0)} ms`);
     const times = Object.entries(numbers.times).map(([stage, ms]) => `${stage} ${ms.toFixed(0)} ms`);
-    this.parts["groom"].title = times.join("\n") || "nothing had to be computed";
+    this.parts["groom"].title = times.join("\n") || "taken from memory";
   }
 
   private set(name: string, text: string): void {

@@ -24,11 +24,11 @@ export class TimelineBar {
   private readonly runs = h("div", { class: "runs", "aria-hidden": "true" });
   private readonly readout = h("output", { class: "frame-told" });
   private readonly run = h("button", { type: "button", class: "primary" }, "Run");
-  private readonly again = iconButton("again", "Run again from this frame, with the settings as they are", () =>
+  private readonly again = iconButton("again", "Run again from this frame, with the current settings", () =>
     this.model.say({ kind: "play", action: "again_from", frame: this.frame }),
   );
-  private readonly watch = iconButton("play", "Play what is there (space)", () => this.toggle());
-  private readonly rate = h("select", { class: "rate", "aria-label": "Frames a second of playback" });
+  private readonly watch = iconButton("play", "Play the simulated frames (space)", () => this.toggle());
+  private readonly rate = h("select", { class: "rate", "aria-label": "Playback rate (frames per second)" });
   private readonly against = h("select", { "aria-label": "Compare with a run or cache" });
   private readonly swing: SwingChart;
   private readonly chart = iconButton("chart", "Swing and earlier runs", () => this.showSwing(this.swing.element.hasAttribute("hidden")));
@@ -59,12 +59,12 @@ export class TimelineBar {
     for (const topic of ["timeline", "role", "files"] as const) model.on(topic, () => this.update());
     this.chart.setAttribute("aria-expanded", "false");
     new ResizeObserver(() => this.tellHeight()).observe(this.element);
-    bindKey({ keys: "Space", does: "play the frames that exist, or stop", on: plainKey(" "), run: () => model.timeline && this.toggle() });
+    bindKey({ section: "Frames", keys: "Space", does: "play the simulated frames, or stop", on: plainKey(" "), run: () => model.timeline && this.toggle() });
     const mark = (event: KeyboardEvent) => model.timeline && this.mark(event.key.toLowerCase() === "i" ? "in" : "out");
-    bindKey({ keys: "I and O", does: "in point, out point of playback at this frame; once more removes it", on: plainKey("i", "o"), run: mark });
+    bindKey({ section: "Frames", keys: "I and O", does: "set the in or the out point of playback to this frame; press again to remove it", on: plainKey("i", "o"), run: mark });
     const jump = (event: KeyboardEvent) => this.jump(event.key === "Home" ? "first" : "last");
-    bindKey({ keys: "Home and End", does: "first frame, last frame of playback", on: plainKey("Home", "End"), run: jump });
-    bindKey({ keys: ", and .", does: "previous frame, next frame", on: plainKey(",", "."), run: (event) => this.by(event.key === "," ? -1 : 1) });
+    bindKey({ section: "Frames", keys: "Home and End", does: "first frame, last frame of playback", on: plainKey("Home", "End"), run: jump });
+    bindKey({ section: "Frames", keys: ", and .", does: "previous frame, next frame", on: plainKey(",", "."), run: (event) => this.by(event.key === "," ? -1 : 1) });
   }
 
   /** Compares with an earlier run, `run 2`, or a cache; with nothing for an empty name. */
@@ -345,14 +345,14 @@ export class TimelineBar {
     this.swing.show(this.frame);
     const parts = [`frame ${this.frame}`];
     if (timeline.state === "rolling") parts[0] = `before the first frame: ${timeline.rolled} of ${timeline.preroll}`;
-    else if (!timeline.frames.length) parts[0] = "not run yet";
+    else if (!timeline.frames.length) parts[0] = "not simulated";
     else {
       const at = closest(timeline.frames, this.frame);
       if (timeline.stale[at]) parts.push(`of run ${timeline.runs[at]}, with other settings`);
     }
     const { in: from, out: to } = this.range;
     if (from !== null || to !== null) parts.push(`plays ${this.span.first} to ${this.span.last}`);
-    if (typeof stretch === "number") parts.push(`stretched ${(100 * stretch).toFixed(1)} % at most`);
+    if (typeof stretch === "number") parts.push(`stretch up to ${(100 * stretch).toFixed(1)} %`);
     this.readout.textContent = parts.join(" · ");
   }
 }

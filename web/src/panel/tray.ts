@@ -3,6 +3,7 @@
 import { h, iconButton } from "../dom";
 import { authorField } from "./author";
 import { bindKey, plainKey } from "./keys";
+import { ownName } from "./people";
 import "./tray.css";
 
 export interface TrayTab {
@@ -23,13 +24,15 @@ export class Tray {
   private readonly list = h("div", { class: "group", role: "tablist", "aria-label": "Tray" });
   private readonly actions = h("div", { class: "group tray-actions" });
   private readonly body = h("div", { class: "tray-body" });
+  private readonly author: HTMLInputElement;
   private chosen: TrayTab | null = null;
 
   constructor(renamed: () => void) {
     this.button.setAttribute("aria-pressed", "false");
+    this.author = authorField(renamed);
     const close = iconButton("close", "Close the tray", () => this.show(false));
-    this.element.append(h("header", { class: "tray-head" }, this.list, this.actions, authorField(renamed), close), this.body);
-    bindKey({ keys: "T", does: "the tray of snapshots, notes and references", on: plainKey("t"), run: () => this.show(this.element.hidden === true) });
+    this.element.append(h("header", { class: "tray-head" }, this.list, this.actions, this.author, close), this.body);
+    bindKey({ section: "Review", keys: "T", does: "open or close the tray of snapshots, notes and references", on: plainKey("t"), run: () => this.show(this.element.hidden === true) });
   }
 
   add(tab: TrayTab): void {
@@ -62,6 +65,7 @@ export class Tray {
       button.setAttribute("aria-selected", String(tab === this.chosen));
     }
     if (this.element.hidden || !this.chosen) return;
+    if (document.activeElement !== this.author) this.author.value = ownName(); // it may have been given elsewhere
     this.actions.replaceChildren(...this.chosen.actions);
     if (this.body.firstChild !== this.chosen.element) this.body.replaceChildren(this.chosen.element);
   }

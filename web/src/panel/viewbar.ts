@@ -19,7 +19,7 @@ const VIEWS: [string, number, number][] = [
 
 export class Viewbar {
   readonly light = h("select", { "aria-label": "Light" });
-  readonly color = h("select", { "aria-label": "Hair colour" });
+  readonly color = h("select", { "aria-label": "Hair color" });
   private readonly overlay = h("select", { "aria-label": "Overlay" });
   readonly element = h("div", { class: "viewbar", role: "toolbar", "aria-label": "View" });
 
@@ -129,7 +129,7 @@ export class Viewbar {
       iconButton("camera", "Save picture", () => savePicture(viewer, name())),
       film,
       recorded,
-      iconButton("share", "Save a page to share: one file with the look to turn", () =>
+      iconButton("share", "Save a share page: one file that shows the look from all sides", () =>
         model.say({
           kind: "share",
           camera: [...viewer.camera.position.toArray(), ...viewer.controls.target.toArray()],

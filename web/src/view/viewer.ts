@@ -68,7 +68,7 @@ export class Viewer {
     element.append(canvas);
     canvas.tabIndex = 0;
     canvas.setAttribute("role", "img");
-    canvas.setAttribute("aria-label", "The groom. Arrow keys turn, plus and minus move nearer and away, F frames.");
+    canvas.setAttribute("aria-label", "The groom. Arrow keys orbit the camera, plus and minus zoom, F frames all hair.");
     this.view = new OrbitCamera(canvas);
     this.camera = this.view.camera;
     this.controls = this.view.controls;

@@ -206,13 +206,13 @@ class Compare(Message):
 
 
 class Drag(Message):
-    """Drags a point of an isolated lock to a position [m]."""
+    """Drags a point of an isolated lock to a position [m]; the move fades over a fraction of the lock, ``falloff``."""
 
     kind: Literal["drag"] = "drag"
     lock: Id
     point: Row
     to: Position
-    reach: float = Field(default=0.2, ge=0.0, le=1.0)
+    falloff: float = Field(default=0.2, ge=0.0, le=1.0)
     gesture: Gesture
     resting: bool = True
 
