@@ -21,7 +21,7 @@ template <class Element, class Scalar, class Array> std::vector<Element> copied(
     return {rows.begin(), rows.end()};
 }
 
-constexpr size_t values_of_friction = 6; // slip, normal
+constexpr size_t values_of_friction = 3; // slip
 constexpr size_t values_of_overlap = 3;  // gap, force, activation distance
 
 using Rows = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
@@ -38,7 +38,6 @@ nb::dict memory_of(const SceneMemory &memory) {
     for (const FrictionState &of : memory.friction) {
         sticking.push_back(of.pair);
         friction.insert(friction.end(), of.slip.begin(), of.slip.end());
-        friction.insert(friction.end(), of.normal.begin(), of.normal.end());
     }
     for (const auto &[pair, force] : memory.lagged_forces) {
         lagged.push_back(pair);
@@ -66,7 +65,7 @@ nb::dict memory_of(const SceneMemory &memory) {
     add("lagged_forces", std::move(forces), 1);
     add("loads", memory.loads, 1);
     add("friction_pairs", std::move(sticking), 1);
-    add("friction_values", std::move(friction), values_of_friction);
+    add("friction_slips", std::move(friction), values_of_friction);
     add("penetrating_vertices", std::move(penetrating), 1);
     add("penetrating_heights", std::move(heights), 1);
     add("lagging_vertices", std::move(lagging), 1);
@@ -91,7 +90,7 @@ SceneMemory memory_from(const nb::dict &arrays) {
     const std::vector<double> forces = list("lagged_forces", 0.0), heights = list("penetrating_heights", 0.0);
     const std::vector<int> penetrating = list("penetrating_vertices", 0), begun = list("begun", 0);
     const Rows overlaps = rows("overlap_values", values_of_overlap, overlapping.size()),
-               friction = rows("friction_values", values_of_friction, sticking.size());
+               friction = rows("friction_slips", values_of_friction, sticking.size());
     if (lagged.size() != forces.size() || penetrating.size() != heights.size() || begun.size() != 1)
         throw std::invalid_argument("scene: what is to be recalled does not fit together");
     SceneMemory memory;
@@ -110,7 +109,7 @@ SceneMemory memory_from(const nb::dict &arrays) {
     for (size_t k = 0; k < lagged.size(); ++k) memory.lagged_forces.push_back({lagged[k], forces[k]});
     for (size_t k = 0; k < sticking.size(); ++k) {
         const double *values = friction.data() + values_of_friction * k;
-        memory.friction.push_back({sticking[k], Vec3(values), Vec3(values + 3)});
+        memory.friction.push_back({sticking[k], Vec3(values)});
     }
     for (size_t k = 0; k < penetrating.size(); ++k) memory.penetrations.emplace_back(penetrating[k], heights[k]);
     return memory;

@@ -182,7 +182,7 @@ class Varied(Section):
     """A value that may differ from lock to lock. In a recipe: a number, or a table
     ``{ value = …, vary = …, noise = …, map = "…", region = { name = … }, lock = { id = … } }``."""
 
-    value: float
+    value: float = Field(description="the value where nothing below changes it")
     vary: float = Field(
         default=0.0, ge=0.0, le=1.0, description="random change per lock, relative to the value: 0.2 is ±20 %"
     )

@@ -23,7 +23,7 @@ class Mapped(Ramped):
     """A number, or a table ``{ value = …, ramp = [[0, 1], [1, 0.5]], map = "…", vary = …, noise = … }``: the product of
     all of it."""
 
-    value: float = Field(default=1.0)
+    value: float = Field(default=1.0, description="the factor where nothing else changes it")
     map: str | None = Field(
         default=None,
         description="a primvar of floats that multiplies it: of the locks, or of the scalp at their roots",

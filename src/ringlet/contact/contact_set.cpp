@@ -36,6 +36,31 @@ Contact contact_at(const CollisionMesh &mesh, const ContactMaterial &material, c
     return contact;
 }
 
+// An orthonormal frame with its first axis along u and its second across u and v; 0 where they are parallel.
+Mat3 frame(const Vec3 &u, const Vec3 &v) {
+    Mat3 axes;
+    axes.col(0) = u.normalized();
+    axes.col(1) = u.cross(v).normalized();
+    axes.col(2) = axes.col(0).cross(axes.col(1));
+    return axes;
+}
+
+// How a move from `start` to `end` turns a contact that it leaves rigid: with the triangle, with both edges, or with an edge
+// and the line to the other where they are almost parallel. The normal does not tell, since it also turns as the closest points
+// wander over a surface.
+Mat3 rotation(const Contact &contact, View<Vec3> start, View<Vec3> end) {
+    const auto &[p, q, r, s] = contact.vertex;
+    const auto turned = [&](const auto &frame_of) { return Mat3(frame_of(end) * frame_of(start).transpose()); };
+    if (!contact.edge_edge()) return turned([&](View<Vec3> x) { return frame(x[r] - x[q], x[s] - x[q]); });
+    const auto almost_parallel = [&](View<Vec3> x) {
+        const Vec3 a = x[q] - x[p], b = x[s] - x[r];
+        return a.cross(b).squaredNorm() <= contact_settings::parallel_sine2 * a.squaredNorm() * b.squaredNorm();
+    };
+    if (almost_parallel(start) || almost_parallel(end))
+        return turned([&](View<Vec3> x) { return frame(x[q] - x[p], separation(contact, x)); });
+    return turned([&](View<Vec3> x) { return frame(x[q] - x[p], x[s] - x[r]); });
+}
+
 // The slip at which friction holds a force, given as InitialForce gives it.
 Vec3 slip_of_force(const Contact &contact, View<Vec3> positions, const Vec3 &force) {
     const Vec3 edge = positions[contact.vertex[3]] - positions[contact.vertex[2]];
@@ -44,12 +69,6 @@ Vec3 slip_of_force(const Contact &contact, View<Vec3> positions, const Vec3 &for
     const double limit = contact.friction * force[0], length = held.norm();
     if (!(limit > 0.0 && length > 0.0)) return Vec3::Zero();
     return -slip_to_hold(std::min(length / limit, 1.0)) * contact.stick_length / length * held;
-}
-
-// The slip that was held as the step began turns with the contact.
-void resume_slip(const FrictionState &before, Contact &contact) {
-    const Mat3 turn = Eigen::Quaterniond::FromTwoVectors(before.normal, contact.normal).toRotationMatrix();
-    contact.reference = turn * (contact.reference - before.slip);
 }
 
 } // namespace
@@ -68,7 +87,7 @@ void ContactSet::begin(const CollisionMesh &mesh, const ContactMaterial &materia
         for_contact_points(mesh, pair, positions, [&](const ContactPoint &point) {
             const Contact contact = contact_at(mesh, material, pair, point, positions);
             lagged_.push_back({contact.pair, point.share * force->second[0]});
-            friction_.push_back({contact.pair, slip_of_force(contact, positions, force->second), contact.normal});
+            friction_.push_back({contact.pair, slip_of_force(contact, positions, force->second)});
         });
     }
 }
@@ -79,7 +98,7 @@ void ContactSet::commit_friction(View<Vec3> positions) {
         if (contact.is_tie()) continue;
         const Vec3 u = slip(contact, separation(contact, positions));
         const double length = u.norm(), most = contact.stick_length;
-        friction_.push_back({contact.pair, length > most ? Vec3(most / length * u) : u, contact.normal});
+        friction_.push_back({contact.pair, length > most ? Vec3(most / length * u) : u});
     }
 }
 
@@ -116,7 +135,11 @@ std::vector<Contact> ContactSet::linearise(const CollisionMesh &mesh, const Cont
                               contacts.push_back(contact);
                           });
     });
-    for_known(friction_, found, resume_slip);
+    for_known(friction_, found, [](const FrictionState &before, Contact &now) { now.reference -= before.slip; });
+    if (guess_.empty()) return found;
+#pragma omp parallel for schedule(static)
+    for (int k = 0; k < int(found.size()); ++k)
+        if (found[k].friction > 0.0) found[k].reference = rotation(found[k], start, guess_) * found[k].reference;
     return found;
 }
 

@@ -11,8 +11,8 @@ namespace ringlet {
 
 // The slip that friction still holds as a step ends: the spring that the next step begins with.
 struct FrictionState {
-    uint64_t pair;     // name of the contact
-    Vec3 slip, normal; // [m], 1
+    uint64_t pair; // name of the contact
+    Vec3 slip;     // [m]
 };
 
 // The normal force that friction uses next: that which the contact is expected to have.
@@ -45,6 +45,9 @@ public:
     // The contact pairs before the first step are initial overlaps; some have a force.
     void begin(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<ContactPair> &pairs,
                View<InitialForce> forces, View<Vec3> positions);
+
+    // Opens a step with the initial guess of all positions. Separations turn as it turns primitives from where the step began.
+    void begin_step(std::vector<Vec3> guess) { guess_ = std::move(guess); }
 
     // Replaces the contacts by those of the contact pairs at `positions`; `start` says where the step began, for the slip.
     // The normal force of friction is lagged; it is 0 for a new contact: the force at an iterate says little of the solution.
@@ -86,6 +89,7 @@ private:
                                    const std::vector<ContactPair> &pairs, View<Vec3> start, View<Vec3> positions) const;
     void index(const CollisionMesh &mesh);
 
+    std::vector<Vec3> guess_; // before the first step: empty
     std::vector<FrictionState> friction_;
     std::vector<Contact> contacts_;
     std::vector<LaggedForce> lagged_; // of each contact

@@ -163,6 +163,7 @@ SceneReport take_step(SceneData &scene, const SceneInput &input, const SceneStep
     AlignedVector x(scene.blocks.size());
     Refinement refinement(scene.objective);
     move_to_initial_guess(scene, astray, step.tolerance, x, refinement, report);
+    scene.objective.contacts.begin_step(scene.configuration.positions);
 
     const NewtonSettings newton{step.newton, settings.extra, step.tolerance, settings.linear};
     const SolverEffort effort = scene.newton.minimise(start, newton, refinement, x, report);
