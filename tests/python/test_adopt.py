@@ -215,5 +215,7 @@ def test_adopted_hairs_are_refused_among_several_grooms(known, tmp_path):
     folder, _, _ = known
     several = folder / "several.recipe.toml"
     several.write_text('ringlet = 2\n[grooms.hair]\nextends = "adopted.recipe.toml"\n')
-    refused(run("groom", several, "-o", tmp_path / "g.usdc"), "grooms.hair.hairs.file: adopted hairs cannot be combined")
+    refused(
+        run("groom", several, "-o", tmp_path / "g.usdc"), "grooms.hair.hairs.file: adopted hairs cannot be combined"
+    )
     assert not (tmp_path / "g.usdc").exists()
