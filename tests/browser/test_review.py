@@ -133,14 +133,14 @@ def test_operators_are_added_muted_moved_and_removed(opened: Any):
         page.get_by_label("Add an operator").select_option(name)
         review.until(f"ringlet.model.documents.recipe.stages.some(stage => stage.op == '{name}')")
     page.locator('[data-stage="shape/1"]').hover()
-    page.get_by_label("Move loft up").click()
+    page.get_by_label("Move volume up").click()
     review.until("ringlet.model.documents.recipe.stages[2].op == 'volume'")
     page.locator('[data-stage="shape/1"]').hover()
     page.get_by_label("Mute scraggle").click()
     review.until("ringlet.model.documents.recipe.stages[3].muted")
     assert [operator["op"] for operator in tomllib.loads(review.text())["shape"]] == ["volume", "scraggle"]
     page.locator('[data-stage="shape/0"]').hover()
-    page.get_by_label("Remove loft").click()
+    page.get_by_label("Remove volume").click()
     review.until("ringlet.model.documents.recipe.stages[2].op == 'scraggle'")
     assert not review.errors
 
