@@ -34,13 +34,13 @@ def test_a_note_with_arrows_brings_back_its_view_and_is_exported(opened: Any, fo
     page.mouse.down()
     page.mouse.move(520, 250, steps=4)
     page.mouse.up()
+    clear = review.get("ringlet.viewer.clear")  # what the camera sees between the panels while it is drawn
     page.get_by_role("button", name="Keep", exact=True).click()
     review.until("ringlet.model.notes.length == 1")
     eye = review.get("ringlet.viewer.camera.position.toArray()")
     stored = tomllib.loads(next((folder / "small.review/notes").glob("*.toml")).read_text())
     assert stored["lock"] == review.get("ringlet.viewer.hair.a.locks.ids[2]") and stored["text"] == "less frizz here"
     tail, tip = np.array(stored["strokes"][0][:2])  # in heights of the picture, from its middle
-    clear = review.get("ringlet.viewer.clear")  # what the camera sees between the panels; the tray is over it
     middle = np.array([clear["x"] + clear["width"] / 2, clear["y"] + clear["height"] / 2])
     assert tail == pytest.approx((np.array([420, 150]) - middle) * (1, -1) / clear["height"], abs=1e-3)
     assert tip == pytest.approx((np.array([520, 250]) - middle) * (1, -1) / clear["height"], abs=1e-3)
