@@ -66,10 +66,12 @@ def test_a_snapshot_is_taken_compared_loaded_noted_and_deleted(opened: Any, fold
     page.keyboard.press("t")
     cards.nth(1).get_by_role("button", name="Load").click()
     review.until("ringlet.model.said('recipe', ['curl', 'width']) == 1 && ringlet.model.settled")
+    page.get_by_role("button", name="Close the tray").click()
     review.settled()
     assert different(review.picture(), first) < 0.002
     page.keyboard.press("Control+z")
     review.until("ringlet.model.said('recipe', ['curl', 'width']) == 2.5")
+    page.keyboard.press("t")
     cards.first.get_by_role("button", name="Delete").click()
     page.get_by_role("dialog").get_by_role("button", name="Delete", exact=True).click()
     review.until("ringlet.model.snapshots.length == 1")
