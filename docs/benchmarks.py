@@ -32,10 +32,10 @@ def comparisons(peers: dict[str, Any], runs: dict[str, Any]) -> Iterator[str]:
         for row in compare["row"]:
             if run := runs.get(row["result"]):
                 ours = run["result"]["cpu_ms"]["median"]
-                told = f"{time(ours)} | {row['peer'] / ours:,.0f} | `{run['command']}`"
+                cells = f"{time(ours)} | {row['peer'] / ours:,.0f} | `{run['command']}`"
             else:
-                told = "not run | | "
-            yield f"| {row['what']} | {time(row['peer'])} | {told} |"
+                cells = "not run | | "
+            yield f"| {row['what']} | {time(row['peer'])} | {cells} |"
         yield ""
 
 

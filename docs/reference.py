@@ -59,7 +59,7 @@ def table(definition: dict[str, Any], title: str, drawn: dict[str, str]) -> Iter
     required = definition.get("required", [])
     for key, about in definition.get("properties", {}).items():
         unit = about.get("unit", "")
-        default = "*required*" if key in required else told(about.get("default"), unit)
+        default = "*required*" if key in required else written(about.get("default"), unit)
         shown = f" ![{key}, without and with](_generated/settings/{drawn[key]})" if key in drawn else ""
         yield f"| `{key}` | {kind(about, unit)} | {default} | {cell(about.get('description', ''))}{shown} |"
 
@@ -94,7 +94,7 @@ def number(value: float, unit: str) -> str:
     return f"{1e3 * value:g} mm" if value < 0.1 else f"{value:g} m"
 
 
-def told(value: Any, unit: str) -> str:
+def written(value: Any, unit: str) -> str:
     """A default in a few words; nothing for what is simply absent, or is a table of its own."""
     if isinstance(value, dict):
         if "value" not in value:
@@ -104,7 +104,7 @@ def told(value: Any, unit: str) -> str:
             for k, v in value.items()
             if k in ("vary", "noise", "ramp") and v not in (0.0, [[0.0, 1.0], [1.0, 1.0]])
         }
-        return ", ".join([told(value["value"], unit), *(f"{k} `{v}`" for k, v in rest.items())])
+        return ", ".join([written(value["value"], unit), *(f"{k} `{v}`" for k, v in rest.items())])
     if value is None or value in ("", []):
         return ""
     if isinstance(value, bool) or not isinstance(value, int | float):

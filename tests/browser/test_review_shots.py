@@ -65,7 +65,7 @@ def test_frames_are_played_between_in_and_out_points_at_a_rate(opened: Any):
         review.get(f"ringlet.timeline.show({frame})")
         canvas.press(key)
     assert review.page.locator(".left-out").count() == 2
-    assert "plays 2 to 3" in review.page.locator(".frame-told").inner_text()
+    assert "plays 2 to 3" in review.page.locator(".frame-readout").inner_text()
     canvas.press("End")
     assert review.get("ringlet.timeline.current") == 3
     review.get("(window.played = new Set(), setInterval(() => played.add(ringlet.timeline.current), 5))")

@@ -39,7 +39,7 @@ export class BrushTool extends HandTool {
       ...this.tip.rows,
       row("show hair", this.hair),
       h("div", { class: "group" }, this.all, this.done),
-      h("p", { class: "told" }, "The right button, Alt or the arrow keys orbit the camera; so does a finger that starts off the hair."),
+      h("p", { class: "hint" }, "The right button, Alt or the arrow keys orbit the camera; so does a finger that starts off the hair."),
     );
     this.hair.checked = true;
     this.tip.mirrored.addEventListener("change", () => this.update());

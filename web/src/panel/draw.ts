@@ -19,7 +19,7 @@ export class DrawTool extends HandTool {
   private readonly endLift = new Slider({ id: "draw-lift" }, () => this.tell());
   private readonly height = h("output", { class: "unit", for: "draw-lift" });
   private readonly line = new Line(new BufferGeometry(), new LineBasicMaterial({ color: 0xff9e4d, depthTest: false }));
-  private readonly words = h("p", { class: "told" });
+  private readonly words = h("p", { class: "hint" });
   private readonly lifts: HTMLElement;
   private place: Place = [];
   private stroke: Vector3[] = [];

@@ -36,7 +36,7 @@ export class PaintTool extends HandTool {
       ...this.tip.rows,
       row("show hair", this.hair),
       h("div", { class: "group" }, this.done),
-      h("p", { class: "told" }, "The right button, Alt or the arrow keys orbit the camera."),
+      h("p", { class: "hint" }, "The right button, Alt or the arrow keys orbit the camera."),
     );
     this.hair.checked = true;
     this.tip.mirrored.addEventListener("change", () => this.showPlane());

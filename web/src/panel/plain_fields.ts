@@ -68,7 +68,7 @@ export class ColorField extends Field {
 }
 
 export class OtherField extends Field {
-  private readonly readout = h("code", { class: "told" });
+  private readonly readout = h("code", { class: "hint" });
 
   constructor(model: Model, file: File, place: Place, setting: Setting) {
     super(model, file, place, setting);

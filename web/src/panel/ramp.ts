@@ -50,7 +50,7 @@ export class RampEditor {
   private readonly curve = document.createElementNS(NS, "path");
   private readonly area = document.createElementNS(NS, "path");
   private readonly numbers = document.createElementNS(NS, "g");
-  private readonly readout = h("output", { class: "ramp-told" });
+  private readonly readout = h("output", { class: "ramp-readout" });
   private readonly shapes = h("select", { class: "ramp-shapes" });
   private points: Ramp = [
     [0, 1],

@@ -66,7 +66,7 @@ export class SettingSearch {
     const words = this.input.value.toLowerCase().split(/\s+/).filter(Boolean);
     this.found = words.length ? this.all(words).sort((a, b) => a.rank - b.rank).slice(0, MOST) : [];
     this.active = 0;
-    const none = h("li", { class: "told" }, "No setting matches.");
+    const none = h("li", { class: "hint" }, "No setting matches.");
     const rows = this.found.map((one, k) => {
       const label = one.inner ? `${one.setting.label} › ${one.inner.label}` : one.setting.label;
       const about = (one.inner ?? one.setting).description;

@@ -71,7 +71,7 @@ export class Settings {
         this.search.results,
         h("h2", {}, stageTitle(this.model)),
         locks.length ? h("p", { class: "alone" }, `of ${of} alone`) : "",
-        nothing ? h("p", { class: "told" }, "This stage has no setting that can vary by lock.") : "",
+        nothing ? h("p", { class: "hint" }, "This stage has no setting that can vary by lock.") : "",
         h("div", { class: "fields" }, ...this.fields.map((field) => field.element)),
         this.more,
       );

@@ -20,7 +20,7 @@ export class Status {
       ["sim", "simulated"],
     ]) {
       const value = h("b", {});
-      const part = h("span", { class: "number-told", "data-number": name, hidden: true }, value, ` ${label}`);
+      const part = h("span", { "data-number": name, hidden: true }, value, ` ${label}`);
       this.parts[name] = part;
       this.element.append(part);
     }

@@ -22,7 +22,7 @@ export class TimelineBar {
   private readonly frames: Record<Layer, Map<number, Frame>> = { shot: new Map(), against: new Map() };
   private readonly slider = h("input", { type: "range", step: 1, "aria-label": "Frame" });
   private readonly runs = h("div", { class: "runs", "aria-hidden": "true" });
-  private readonly readout = h("output", { class: "frame-told" });
+  private readonly readout = h("output", { class: "frame-readout" });
   private readonly run = h("button", { type: "button", class: "primary" }, "Run");
   private readonly again = iconButton("again", "Run again from this frame, with the current settings", () =>
     this.model.say({ kind: "play", action: "again_from", frame: this.frame }),
