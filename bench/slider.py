@@ -10,29 +10,35 @@ from typing import Any
 
 import numpy as np
 from groom import recipe_text
+from ringlet.groom.recipe import Recipe
 
 from ringlet import Clock, Memory, build_groom, build_hairs, read_recipe
 
 
-def run(guides: int = 500, locks: int = 2000, points: int = 60, hairs: int = 50_000, moves: int = 10) -> dict[str, Any]:
-    """Grooms the example head once, then moves the slider ``moves`` times.
+def run(
+    guides: int = 500, locks: int = 2000, points: int = 60, hairs: int = 50_000, moves: int = 10, recipe: str = ""
+) -> dict[str, Any]:
+    """Grooms the example head, or a recipe, then moves the slider ``moves`` times.
 
     guides: guides that the locks are interpolated from
     locks:  groom guides
     points: points of a guide and of a hair
     hairs:  total number of render hairs
     moves:  timed moves of the slider, after two to warm up
+    recipe: file whose locks and hairs are taken instead
     """
     clock, cold = Clock(), Clock()
+    given = read_recipe(recipe) if recipe else None
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "slider.recipe.toml"
 
         def evaluate(width: float, memory: Memory, clock: Clock, name: str) -> Any:
-            path.write_text(recipe_text(guides, locks, points, hairs, width))
+            if given is None:
+                path.write_text(recipe_text(guides, locks, points, hairs, width))
             stages = Stages(clock)
             with clock(name):
                 with clock("recipe"):
-                    recipe = read_recipe(path)
+                    recipe = read_recipe(path) if given is None else with_width(given, width / 9.0)
                 with clock("groom"):
                     groom = build_groom(recipe, memory=memory, progress=stages)
                 with clock("hairs"):
@@ -55,7 +61,9 @@ def run(guides: int = 500, locks: int = 2000, points: int = 60, hairs: int = 50_
     memory_rate = copy_rate()
     return clock.result(
         "slider",
-        {"guides": guides, "locks": locks, "points": points, "hairs": hairs, "moves": moves},
+        {"recipe": recipe, "moves": moves}
+        if recipe
+        else {"guides": guides, "locks": locks, "points": points, "hairs": hairs, "moves": moves},
         per="slider",
         warm_up=2,
         cold_cpu_ms=statistics.median(cold.cpu["cold"]),
@@ -69,6 +77,13 @@ def run(guides: int = 500, locks: int = 2000, points: int = 60, hairs: int = 50_
         bandwidth_share=warp_rate / memory_rate,
         nan=int(np.count_nonzero(~np.isfinite(hair.curves.points))),
     )
+
+
+def with_width(recipe: Recipe, factor: float) -> Recipe:
+    """A recipe whose curls are wider by a factor."""
+    width = recipe.curl.width
+    wider = width.model_copy(update={"value": factor * width.value})
+    return recipe.model_copy(update={"curl": recipe.curl.model_copy(update={"width": wider})})
 
 
 class Stages:

@@ -129,11 +129,16 @@ def contact() -> Figure:
     arrow(limited, (1.8, 1.8), (1.8, 0.4), RED)
     limited.set_title("CCD limits each move before the impact", fontsize=10)
     g = np.linspace(0.01, 1.3, 400)
-    phi = np.where(g > 1, 0, np.where(g > 0.5, 0.5 * (1 - g) ** 2, -0.25 * (np.log(2 * g) - 0.5)))
+    onset, middle = 0.15, 0.925  # a and s = r − a/2, with r = 1
+    phi = np.select(
+        [g > 1, g > 1 - onset, g > 0.5 * middle],
+        [0, (1 - g) ** 3 / (6 * onset), 0.5 * (middle - g) ** 2 + onset**2 / 24],
+        -0.25 * middle**2 * (np.log(2 * g / middle) - 0.5) + onset**2 / 24,
+    )
     curve.plot(g, phi, color=RED)
-    curve.axvline(0.5, color=GREY, ls=":", lw=0.8)
-    curve.axvline(1.0, color=GREY, ls=":", lw=0.8)
-    curve.set_xticks([0, 0.5, 1], ["0", "r/2", "r"])
+    for place in (0.5 * middle, 1 - onset, 1.0):
+        curve.axvline(place, color=GREY, ls=":", lw=0.8)
+    curve.set_xticks([0, 0.5 * middle, 1 - onset, 1], ["0", "s/2", "r − a", "r"])
     curve.set_yticks([])
     curve.set_xlabel("gap g", fontsize=9)
     curve.set_ylabel("barrier φ", fontsize=9)

@@ -22,8 +22,9 @@ from ringlet.sim.strands import Strands
 from ringlet.validate.case import Case, Row
 
 DISTANCE, STEP = 1e-3, 1 / 240  # activation distance r [m], time step [s]
-PRESSES = (0.002, 0.004, 0.02, 0.05, 0.2, 0.5, 1.0, 3.0, 10.0)  # loads [k r]
+PRESSES = (0.0005, 0.002, 0.004, 0.02, 0.05, 0.2, 0.5, 1.0, 3.0, 10.0)  # loads [k r]
 LEVELS = (0.01, 0.1, 1.0)  # stiffness levels [k]
+ONSET = 0.15  # depth over which the stiffness of the barrier rises from 0 [r]
 
 
 def pressed(*presses: float, steps: int = 100) -> list[float]:
@@ -51,7 +52,12 @@ def gap_under(press: NDArray[np.floating], levels: tuple[float, ...] = LEVELS) -
     """Equilibrium gap relative to r under loads [k r], shape (n,), at the lowest sufficient level, or the last."""
     press = np.asarray(press, float)
     by_level = press / np.select([press <= level for level in levels], levels, levels[-1])
-    return np.where(by_level < 0.5, 1 - by_level, 0.25 / by_level)
+    middle = 1 - 0.5 * ONSET
+    return np.select(
+        [by_level < 0.5 * ONSET, by_level < 0.5 * middle],
+        [1 - np.sqrt(2 * ONSET * by_level), middle - by_level],
+        middle**2 / (4 * by_level),
+    )
 
 
 def run() -> Iterator[Row]:

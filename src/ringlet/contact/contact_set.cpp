@@ -106,12 +106,14 @@ void ContactSet::commit_friction(View<Vec3> positions) {
 template <class Work>
 void ContactSet::for_active_points(const CollisionMesh &mesh, const ContactPair &pair, View<Vec3> positions,
                                    const Work &work) const {
-    double d_hat = pair.d_hat, room = pair.d_hat; // over which the force builds up
+    const double least_depth = contact_settings::least_loaded_depth * pair.d_hat;
+    double d_hat = pair.d_hat, most = pair.d_hat; // the largest force that it takes up, per stiffness [m]
     if (const InitialOverlap *overlap = overlaps.find(pair)) {
-        room = d_hat = std::min(d_hat, overlap->activation);
-        if (overlap->force > 0.0) room = std::min(room, pair.d_hat - overlap->gap);
+        d_hat = std::min(d_hat, overlap->activation), most = std::max(d_hat, least_depth);
+        if (overlap->force > 0.0)
+            most = std::min(most, -barrier(std::min(overlap->gap, pair.d_hat - least_depth), pair.d_hat, 0.0).first);
     }
-    const double loaded_fraction = std::max(room / pair.d_hat, contact_settings::least_loaded_fraction);
+    const double loaded_fraction = most / pair.d_hat;
     for_contact_points(mesh, pair, positions, [&](const ContactPoint &point) {
         const double gap = std::sqrt(point.closest.distance2);
         if (!(gap > 0.0 && gap < d_hat)) return;

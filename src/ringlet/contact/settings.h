@@ -5,14 +5,15 @@ namespace ringlet::contact_settings {
 
 // Contact points and barriers
 inline constexpr double parallel_sine2 = 0.01;       // sin² of the angle of edges that push at their ends below
+inline constexpr double barrier_onset = 0.15;        // of d̂, over which the stiffness of the barrier rises from 0
 inline constexpr double d_hat_per_barrier_end = 100; // divides d̂: below that gap the barrier is a parabola
 
 // Friction
 inline constexpr double zero_slip = 1e-9; // of the stick length: a smaller slip has no direction
 
 // Initial overlaps
-inline constexpr double least_gap = 0.01;             // of d̂: closer pairs can hardly move, and part first
-inline constexpr double least_loaded_fraction = 0.01; // of d̂, over which an overlap takes up its load
+inline constexpr double least_gap = 0.01;          // of d̂: closer pairs can hardly move, and part first
+inline constexpr double least_loaded_depth = 0.01; // of d̂: a shallower overlap that carries a load does so no more stiffly
 
 // Stiffness levels of strands
 inline constexpr double softest_level = 0.01; // of the largest stiffness
