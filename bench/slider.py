@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 from groom import recipe_text
-from ringlet.groom.recipe import Recipe
 
 from ringlet import Clock, Memory, build_groom, build_hairs, read_recipe
 
@@ -79,7 +78,7 @@ def run(
     )
 
 
-def with_width(recipe: Recipe, factor: float) -> Recipe:
+def with_width(recipe: Any, factor: float) -> Any:
     """A recipe whose curls are wider by a factor."""
     width = recipe.curl.width
     wider = width.model_copy(update={"value": factor * width.value})
