@@ -1,7 +1,7 @@
 """Makes the small pictures of looks that the review offers, next to their recipes: `python docs/look_pictures.py`.
 
-Each is the picture of the gallery in small. A look that the gallery does not show is rendered on the head of its recipe,
-with a part of its hairs. Missing ones are made; ``--again`` makes all.
+Each is the picture of the gallery in small. A look that the gallery does not show is rendered on its own head, with a
+part of its hairs. Missing ones are made; ``--again`` makes all.
 """
 
 from __future__ import annotations
