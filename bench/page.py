@@ -48,13 +48,14 @@ PROBE = """
   };
 })()
 """
-# Turns the camera in each frame of the browser.
+# Turns the camera in each frame of the browser, until the time has passed and there are enough pictures for a median.
 ORBIT = """
-(seconds) => new Promise((done) => {
-  const { viewer } = ringlet, end = performance.now() + 1000 * seconds, first = viewer.pictures;
+({ seconds, least }) => new Promise((done) => {
+  const { viewer } = ringlet, began = performance.now(), first = viewer.pictures;
   drawn.length = scripts.length = 0;
   const turn = () => {
-    if (performance.now() > end) return done(viewer.pictures - first);
+    const passed = (performance.now() - began) / 1000;
+    if (passed > seconds && drawn.length >= least) return done([viewer.pictures - first, passed]);
     viewer.orbit(0.02, 0);
     viewer.move();
     requestAnimationFrame(turn);
@@ -62,6 +63,7 @@ ORBIT = """
   turn();
 })
 """
+FEWEST = 15  # pictures of an orbit
 RENDERER = """
 (() => {
   const gl = ringlet.viewer.renderer.getContext();
@@ -78,7 +80,7 @@ def run(
     orbit_locks: int = 2778,
     seconds: float = 10,
 ) -> dict[str, Any]:
-    """Drags the curl width of the example with a pointer ``steps`` times; orbits for some seconds.
+    """Drags the curl width of the example with a pointer ``steps`` times (0: not at all); orbits for some seconds.
 
     Each time [ms] is the median of the parts of a new picture:
 
@@ -90,7 +92,7 @@ def run(
     Of a picture while the camera orbits:
 
     picture:  from the begin of a drawing until the graphics card reports it as done
-    script:   the page's own share of that; the rest is drawing
+    script:   the page's own share of that, also the least and the most, with light that is computed again
     server:   processor time of the server in the same time
     """
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
@@ -107,24 +109,28 @@ def run(
             review.get(PROBE)
             return server, review
 
-        server, review = opened(locks)
-        try:
-            times = drag(review, steps)
-            renderer, hairs = review.get(RENDERER), review.get("ringlet.model.numbers.hairs")
-        finally:
-            review.page.close()
-            server.kill()
+        times = {}
+        if steps:
+            server, review = opened(locks)
+            try:
+                times = {"hairs": review.get("ringlet.model.numbers.hairs"), **drag(review, steps)}
+            finally:
+                review.page.close()
+                server.kill()
         server, review = opened(orbit_locks)
         try:
-            review.until("drawn.length > 2")  # shaders are compiled
-            before = processor_ms(server)
-            pictures = review.page.evaluate(ORBIT, seconds)
-            drawn = review.get("drawn")
+            review.until("drawn.length > 2", 600.0)  # shaders are compiled
+            renderer, before = review.get(RENDERER), processor_ms(server)
+            pictures, passed = review.page.evaluate(ORBIT, {"seconds": seconds, "least": FEWEST})
+            drawn, scripts = review.get("drawn"), review.get("scripts")
             orbit = {
                 "hairs": review.get("ringlet.model.numbers.hairs"),
-                "pictures_per_s": pictures / seconds,
+                "pictures": pictures,
+                "pictures_per_s": pictures / passed,
                 "picture_ms": statistics.median([took for took, _ in drawn]),
-                "script_ms": statistics.median(review.get("scripts")),
+                "script_ms": statistics.median(scripts),
+                "least_script_ms": min(scripts),
+                "lit_script_ms": max(scripts),
                 "server_ms": (processor_ms(server) - before) / pictures,
                 "hairs_drawn": statistics.median([shown for _, shown in drawn]),
             }
@@ -132,7 +138,7 @@ def run(
             server.kill()
     params = {"locks": locks, "per_lock": per_lock, "points": points, "steps": steps}
     params |= {"orbit_locks": orbit_locks, "seconds": seconds}
-    return {"name": "page", "params": params, "renderer": renderer, "hairs": hairs, **times, "orbit": orbit}
+    return {"name": "page", "params": params, "renderer": renderer, **times, "orbit": orbit}
 
 
 def drag(review: Review, steps: int) -> dict[str, dict[str, float]]:

@@ -1,44 +1,47 @@
 """Makes the small pictures of looks that the review offers, next to their recipes: `python docs/look_pictures.py`.
 
-Each is the picture of the gallery in small. A look that the gallery does not show yet is rendered on its own head, with
-a part of its hairs. Missing ones are made; ``--again`` makes all.
+Each is the picture of the gallery in small. A look that the gallery does not show is rendered on its own head, with a
+part of its hairs. Missing ones are made; ``--again`` makes all.
 """
 
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 
-from gallery import FOLDER, ROOT, Shot, Style, photograph, read_styles, variant
+from gallery import FOLDER, Shot, photograph, read_styles
 from PIL import Image
+from ringlet.viewer.presets import Preset, looks
 
-CAMERA = Shot(at=(0, 40.5, -1), height=37, view=(34, 7), size=(160, 178), samples=14)
+CAMERA = Shot(at=(0, 40.5, -1), height=37, view=(34, 7), size=(160, 178), samples=48)
 HAIRS = 0.15  # part of the hairs, each wider
+HEIGHTS = {"looks/ombre": 45}  # of what is seen, where hair is wider than the head of the others [cm]
 
 
-def picture_of(style: Style) -> Path:
-    """Path of the picture of a look."""
-    name = style.recipe.name.removesuffix(".recipe.toml")
-    return style.recipe.parent / "pictures" / f"{name}.jpg"
+def large_pictures() -> dict[Path, Path]:
+    """Large pictures of the gallery by their recipes; some are not rendered yet."""
+    styles = read_styles()
+    return {style.recipe: FOLDER / f"{style.name}_{next(iter(style.shots))}.jpg" for style in styles}
 
 
-def make(style: Style) -> None:
+def make(look: Preset, large: Path | None) -> None:
     """Makes the picture of a look."""
-    head = next(iter(style.shots.values()))[0]
-    large = FOLDER / f"{style.name}_{head}.jpg"
-    if large.exists():
+    if large and large.exists():
         picture = Image.open(large).resize(CAMERA.size, Image.Resampling.LANCZOS)
     else:
-        picture = photograph(variant(style.recipe, head), CAMERA, "scalar", HAIRS)
-    picture_of(style).parent.mkdir(exist_ok=True)
-    picture.save(picture_of(style), quality=82)
-    print(picture_of(style).relative_to(ROOT), flush=True)
+        camera = replace(CAMERA, height=HEIGHTS.get(look.name, CAMERA.height))
+        picture = photograph(f'ringlet = 2\nextends = "{look.file}"\n', camera, "scalar", HAIRS)
+    look.picture.parent.mkdir(exist_ok=True)
+    picture.save(look.picture, quality=82)
+    print(look.name, flush=True)
 
 
 def main() -> None:
-    for style in read_styles():
-        if "--again" in sys.argv or not picture_of(style).exists():
-            make(style)
+    large = large_pictures()
+    for look in looks():
+        if "--again" in sys.argv or not look.picture.exists():
+            make(look, large.get(look.file))
 
 
 if __name__ == "__main__":

@@ -82,6 +82,18 @@ def test_pictures_and_movies_are_saved(opened: Any):
     assert Path(movie.value.path()).stat().st_size > 1000
 
 
+def test_the_list_of_views_says_when_the_camera_has_left_them(opened: Any):
+    review: Review = opened()
+    views = review.page.get_by_label("View from")
+    views.select_option("Left")
+    first = review.get("ringlet.viewer.view.place")
+    review.get("ringlet.viewer.key('ArrowLeft')")
+    assert views.evaluate("e => e.selectedOptions[0].text") == "free view"
+    assert review.get("ringlet.viewer.view.place") != first
+    views.select_option("Left")
+    assert review.get("ringlet.viewer.view.place") == pytest.approx(first)
+
+
 @pytest.mark.parametrize("width, height", [(820, 1180), (1180, 820)])
 def test_every_control_is_reachable_on_a_tablet(opened: Any, width: int, height: int):
     review: Review = opened(viewport={"width": width, "height": height})

@@ -108,7 +108,7 @@ PACE = """(() => {
     pace.resolved = 0.2;
     for (let picture = 0; picture < 40; picture++) {
         const portion = pace.next(MOVING);
-        times.push(portion.fraction * portion.drawings * hairs * PER_HAIR);
+        times.push(portion.fraction * portion.drawings * hairs * PER_HAIR + pace.scale ** 2 * ALL_PIXELS);
         pace.took(times.at(-1), portion, MOVING);
     }
     return times.slice(20);
@@ -120,7 +120,7 @@ def test_pictures_are_fluent_while_something_moves_and_soon_cancelled_at_rest(op
 
     def times(**values: Any) -> list[float]:
         script = PACE
-        for name, value in values.items():
+        for name, value in {"ALL_PIXELS": 0, **values}.items():
             script = script.replace(name, str(value))
         return review.get(script)
 
@@ -128,13 +128,15 @@ def test_pictures_are_fluent_while_something_moves_and_soon_cancelled_at_rest(op
     assert max(times(SOFTWARE="false", MOVING="true", PER_HAIR=0.001)) < 33
     assert max(times(SOFTWARE="true", MOVING="true", PER_HAIR=0.02)) < 100
     assert max(times(SOFTWARE="true", MOVING="false", PER_HAIR=0.02)) < 100
+    # hairs that cover many pixels, in software
+    assert max(times(SOFTWARE="true", MOVING="true", PER_HAIR=0.001, ALL_PIXELS=800)) < 100
 
 
 def test_input_ends_a_progressive_picture_after_one_drawing(opened: Any):
     review: Review = opened()
     review.until("ringlet.viewer.idle")
     # A picture at rest of dozens of drawings, none of which is planned to take longer than input may wait.
-    review.get("(ringlet.viewer.pace.took = () => {}, ringlet.viewer.pace.whole = 4000)")
+    review.get("Object.assign(ringlet.viewer.pace, { took: () => {}, whole: 4000, scale: 1 })")
     at_rest, moving = (review.get(f"ringlet.viewer.pace.next({way})") for way in ("false", "true"))
     assert at_rest["drawings"] == 1 and 4000 * at_rest["fraction"] < 100
     assert review.get(f"ringlet.viewer.pace.needed({at_rest['fraction']})") > 20

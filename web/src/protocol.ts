@@ -444,7 +444,7 @@ export interface Render {
   height: number;
   samples?: number;
   focal_length?: number;
-  light?: "studio" | "window" | "sun";
+  light?: string;
   light_turn?: number;
   color?: string;
 }

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ringlet.data.errors import UserError
 from ringlet.data.reads import record
 from ringlet.data.regular import check_regular
+from ringlet.picture.engine import mitsuba
 from ringlet.picture.studio import lights, rgb
 
 STUDIO, WINDOW, SUN = "studio", "window", "sun"
@@ -113,8 +114,14 @@ def _sun(mi: Any, turn: float) -> dict[str, Any]:
     return {"sky": sky}
 
 
-def _surroundings(mi: Any, path: Path, turn: float) -> dict[str, Any]:
-    """An HDRI in latitude and longitude; the middle of the picture is in front of the subject, at +Z."""
+def read_surroundings(path: Path) -> NDArray[np.float32]:
+    """Radiance of an HDRI in latitude and longitude, at the exposure of the other rigs.
+
+    Linear r, g, b, shape (height, width, 3); the middle of the picture is in front of the subject, at +Z.
+
+    Raises UserError for a file that is no such picture.
+    """
+    mi = mitsuba()
     check_rig(str(path))
     record(path)
     try:
@@ -126,11 +133,15 @@ def _surroundings(mi: Any, path: Path, turn: float) -> dict[str, Any]:
         raise UserError(f"{path}: has light that is negative or no number, or none at all; export it again")
     rows = np.sin(np.pi * (np.arange(len(pixels)) + 0.5) / len(pixels))[:, None]  # a row near a pole is a small circle
     mean = (rows * (pixels @ (0.2126, 0.7152, 0.0722))).mean() / rows.mean()
+    return (SURROUNDINGS / mean * pixels).astype(np.float32)
+
+
+def _surroundings(mi: Any, path: Path, turn: float) -> dict[str, Any]:
+    """An HDRI around the subject."""
     return {
         "surroundings": {
             "type": "envmap",
-            "bitmap": bitmap,
-            "scale": SURROUNDINGS / mean,
+            "bitmap": mi.Bitmap(read_surroundings(path)),
             "to_world": mi.ScalarTransform4f().rotate([0, 1, 0], turn),
         }
     }

@@ -13,6 +13,7 @@ GROOM = "groom"  # the groom cannot be made
 WORK = "work"  # the groom takes much longer than the one that is seen
 SAVE = "save"  # a file is not saved, as its groom cannot be made
 COPIED = "copied"  # a copy of a shot's recipe is saved, and the shot names the recipe
+LIGHT = "light"  # an HDRI cannot be read
 RECOVERED = "recovered"
 RENAMED = "renamed"  # the file has former names of settings
 OF_OPENING = {RECOVERED, RENAMED}

@@ -13,6 +13,8 @@ from ringlet.data.picture import PictureSettings
 from ringlet.picture import Pose, PosedBody
 from ringlet.picture.camera import SENSOR
 from ringlet.viewer import protocol
+from ringlet.viewer.lights import light_file
+from ringlet.viewer.project import Project
 from ringlet.viewer.publisher import SendQueue
 from ringlet.viewer.render_process import RenderProcess, RenderStep, RenderTask
 from ringlet.viewer.viewport import Viewport
@@ -27,7 +29,8 @@ class Rendering:
     A spare process has loaded the path tracer before it is asked for, once a page has rendered.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, project: Project) -> None:
+        self._project = project
         self._running: dict[SendQueue, RenderProcess] = {}
         self._spare: RenderProcess | None = None
 
@@ -41,7 +44,7 @@ class Rendering:
             height=message.height,
             samples=message.samples,
             color=message.color or None,
-            light=message.light,
+            light=light_file(message.light, self._project),
             light_turn=message.light_turn,
             bounces=BOUNCES,
         )

@@ -22,11 +22,11 @@ from ringlet.viewer.document_message import document_message
 from ringlet.viewer.editing import Editing
 from ringlet.viewer.files import Files
 from ringlet.viewer.grooming import Grooming
-from ringlet.viewer.lights import live_rigs
+from ringlet.viewer.lights import live_rigs_of
 from ringlet.viewer.operator_list import operator_names
 from ringlet.viewer.pages import Page, Pages
 from ringlet.viewer.playback import Playback
-from ringlet.viewer.problems import OF_OPENING, RECOVERED, RENAMED, ProblemList, dismiss
+from ringlet.viewer.problems import LIGHT, OF_OPENING, RECOVERED, RENAMED, ProblemList, dismiss
 from ringlet.viewer.project import Project
 from ringlet.viewer.publisher import Publisher
 from ringlet.viewer.recovery import Recovery
@@ -67,7 +67,7 @@ class Session:
         self._grooming = Grooming(project, self.publisher, self.problems, self._call, self._show, trouble)
         self._review = Reviewing(project, self.publisher, notice)
         self._comparer = Comparer(project, self.publisher, self._call)
-        self._rendering, self._sharer = Rendering(), Sharer(project)
+        self._rendering, self._sharer = Rendering(project), Sharer(project)
         self._editing = Editing(self.publisher, self.pages, self.submit)
         self._disk = DiskChanges(
             project, self.publisher, self.problems, self._review, self._call, self._editing.edited, notice, self._record
@@ -192,6 +192,11 @@ class Session:
     def _welcome(self, name: str) -> bytes:
         """First message to the page of a name."""
         schemas = _schemas()
+        lights, wrong = live_rigs_of(self.project)
+        if wrong:
+            self.problems.show(LIGHT, "; ".join(wrong), [dismiss(LIGHT)])
+        else:
+            self.problems.clear(LIGHT)
         return pack(
             protocol.Welcome.model_validate(
                 {
@@ -204,7 +209,7 @@ class Session:
                     "operators": operator_names(schemas["recipe"]),
                     "recovered": self.recovered,
                     "colors": display_colors.named(),
-                    "rigs": live_rigs(),
+                    "rigs": lights,
                 }
             )
         )

@@ -21,8 +21,9 @@ from ringlet.data.reads import unrecorded
 from ringlet.groom import read_recipe
 from ringlet.viewer import display_colors
 from ringlet.viewer.display_groom import GroomEvaluator
-from ringlet.viewer.lights import live_rigs
+from ringlet.viewer.lights import live_rigs, live_rigs_of
 from ringlet.viewer.project import Project
+from ringlet.viewer.protocol import Rig
 from ringlet.viewer.publisher import Publisher
 from ringlet.viewer.scene import USD, read_scene
 from ringlet.viewer.share_review import review_of
@@ -69,7 +70,8 @@ def share(file: Path | str, output: Path | str, *, view: Mapping[str, Any] | Non
     if not file.is_file():
         raise UserError(f"{file}: there is no such file; give a recipe or a USD file with hair")
     file = file.resolve()
-    page = make_page(look_messages(file), file.name, view or {}, review_of(file, Project(file.parent)))
+    project = Project(file.parent)
+    page = make_page(look_messages(file), file.name, view or {}, review_of(file, project), live_rigs_of(project)[0])
     with replacing(output) as aside:
         aside.write_text(page.text, encoding="utf-8")
     return {"hairs": page.hairs, "of": page.of}
@@ -93,6 +95,7 @@ def make_page(
     name: str,
     view: Mapping[str, Any],
     review: Mapping[str, Any] | None = None,
+    rigs: Mapping[str, Rig] | None = None,
     most: int = MOST,
 ) -> SharePage:
     """The page of a look.
@@ -101,6 +104,7 @@ def make_page(
     name:     name of its file
     view:     how it is first seen
     review:   ``snapshots`` and ``notes`` that the page shows
+    rigs:     lights that it offers; by default those without files
     most:     largest size [bytes]
 
     Raises UserError for a look that does not fit.
@@ -110,9 +114,11 @@ def make_page(
         raise UserError("share: the groom is still being made; wait until it is shown")
     of = split(messages["a/hairs"])[0]["count"]
 
+    lights = {light: rig.model_dump() for light, rig in (rigs or live_rigs()).items()}
+
     def page(kept: int) -> SharePage:
         shown = messages if kept == of else {each: _first_hairs(data, of, kept) for each, data in messages.items()}
-        facts = {"view": dict(view), "hairs": kept, "of": of, **(review or {})}
+        facts = {"view": dict(view), "hairs": kept, "of": of, "rigs": lights, **(review or {})}
         return SharePage(_page(list(shown.values()), name, facts), kept, of)
 
     made = page(of)
@@ -144,7 +150,6 @@ def _page(messages: list[bytes], name: str, known: dict[str, Any]) -> str:
         "name": name.split(".")[0],
         "file": name,
         "colors": display_colors.named(),
-        "rigs": {name: rig.model_dump() for name, rig in live_rigs().items()},
         **known,
     }
     script, style = (_built(f"share.{kind}") for kind in ("js", "css"))

@@ -10,6 +10,7 @@ import numpy as np
 
 from ringlet.data.errors import UserError
 from ringlet.viewer import protocol
+from ringlet.viewer.lights import live_rigs_of
 from ringlet.viewer.project import Project
 from ringlet.viewer.publisher import SendQueue
 from ringlet.viewer.share_page import make_page
@@ -55,7 +56,8 @@ class Sharer:
 
     def _make(self, asked: Sharing) -> None:
         try:
-            page = make_page(asked.retained, asked.file.name, asked.view, review_of(asked.file, self._project))
+            review, rigs = review_of(asked.file, self._project), live_rigs_of(self._project)[0]
+            page = make_page(asked.retained, asked.file.name, asked.view, review, rigs)
             name = f"{asked.file.name.split('.')[0]}.html"
             made = protocol.SharePage(name=name, hairs=page.hairs, of=page.of)
             asked.page.put("share", pack(made, text=np.frombuffer(page.text.encode(), np.uint8)))

@@ -110,7 +110,7 @@ export class RenderPanel {
       width: Math.round(size.width * part),
       height: Math.round(size.height * part),
       samples: Number(this.samples.value),
-      light: this.viewbar.light.value as Render["light"],
+      light: this.viewbar.light.value,
       color: this.viewbar.color.value,
     };
   }

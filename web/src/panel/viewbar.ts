@@ -52,15 +52,22 @@ export class Viewbar {
       const rigs = Object.entries(this.model.welcome?.rigs ?? {});
       const lit = light.value || rigs[0]?.[0];
       light.replaceChildren(...rigs.map(([key, rig]) => h("option", { value: key }, rig.label)));
-      light.value = lit;
+      light.value = this.model.welcome?.rigs[lit] ? lit : rigs[0]?.[0];
       light.dispatchEvent(new Event("change"));
     });
 
     const from = h("select", { "aria-label": "View from" });
-    for (const [label] of VIEWS) from.append(h("option", {}, label));
+    from.append(h("option", { value: "", hidden: true }, "free view"), ...VIEWS.map(([label]) => h("option", { value: label }, label)));
+    let [[, azimuth, elevation]] = VIEWS;
+    const frame = () => viewer.frame(azimuth, elevation);
+    from.value = VIEWS[0][0];
     from.addEventListener("change", () => {
-      const [, azimuth, elevation] = VIEWS[from.selectedIndex];
-      viewer.frame(azimuth, elevation);
+      [, azimuth, elevation] = VIEWS.find(([label]) => label === from.value)!;
+      frame();
+    });
+    model.on("look", () => {
+      const { framed } = viewer.view;
+      from.value = VIEWS.find(([, a, e]) => framed?.[0] === a && framed[1] === e)?.[0] ?? "";
     });
 
     const legend = h("div", { class: "legend", hidden: true, role: "note" });
@@ -122,9 +129,7 @@ export class Viewbar {
       color,
       from,
       overlay,
-      iconButton("frame", "Frame all hair (F)", () =>
-        viewer.frame(...(VIEWS[from.selectedIndex].slice(1) as [number, number])),
-      ),
+      iconButton("frame", "Frame all hair (F)", frame),
       turn,
       iconButton("camera", "Save picture", () => savePicture(viewer, name())),
       film,

@@ -1,11 +1,12 @@
-// How much is drawn for a picture: as much as keeps pictures fluent while something moves; at rest, drawings are added up
-// until all hairs are in them.
+// How much is drawn for a picture. While something moves, it is as much as keeps pictures fluent, without a graphics card
+// at a smaller size first. At rest, drawings are added up until all hairs are in them.
 //
 // A drawing has so many hairs that each is about a pixel wide, others in each drawing. `load` is the number of hairs that
 // are drawn for a picture, as a fraction of all.
 
 const MOVING = 16; // aim for a picture while something moves [ms]
 const SOFTWARE = 60; // the same without a graphics card [ms]
+const COARSEST = 0.25; // least scale of a picture while something moves
 const AT_REST = 33; // longest drawing at rest [ms]
 const CANCEL = 80; // the same without a graphics card: input waits for the drawing that is on its way [ms]
 const FEWEST = { card: 12, software: 5 }; // drawings of a picture at rest, so that its edges are smooth
@@ -21,6 +22,11 @@ export interface Portion {
 export class Pace {
   /** Load of a picture while something moves. */
   private load = 0.25;
+  /**
+   * Size of a picture while something moves, over that of the canvas. Fewer hairs are wider and cover as much, so that
+   * without a graphics card the time goes by the pixels.
+   */
+  scale = 1;
   /** Time that all hairs take, by the last pictures [ms]. */
   private whole = 0;
   /** Fraction of the hairs that is wide enough for the pixels of a drawing. */
@@ -47,10 +53,12 @@ export class Pace {
   /** A picture is done. */
   took(ms: number, { drawings, fraction }: Portion, moving: boolean): void {
     const load = drawings * fraction;
-    this.whole = ms / load;
+    this.whole = ms / (load * (moving ? this.scale ** 2 : 1));
     if (!moving) return;
     const aim = this.software ? SOFTWARE : MOVING;
-    if (ms > 1.2 * aim) this.load = Math.max(LEAST, load * Math.max(0.4, aim / ms));
+    const scaled = Math.min(1, Math.max(COARSEST, this.scale * Math.min(1.1, Math.max(0.5, Math.sqrt(aim / ms)))));
+    if (this.software && (ms > 1.2 * aim || ms < 0.7 * aim) && scaled !== this.scale) this.scale = scaled;
+    else if (ms > 1.2 * aim) this.load = Math.max(LEAST, load * Math.max(0.4, aim / ms));
     else if (ms < 0.7 * aim) this.load = Math.min(MOST * this.resolved, Math.max(this.load, load) * 1.15);
   }
 }

@@ -19,6 +19,7 @@ export class Painter {
   composed = false;
   /** What panels leave clear of the canvas. */
   left: Box | null = null;
+  private readonly finest: number;
   /** The second look while two are subtracted. */
   private readonly second: Film;
   private readonly difference = new Difference();
@@ -31,7 +32,8 @@ export class Painter {
     this.renderer = new WebGLRenderer({ antialias: false, powerPreference: "high-performance" });
     this.renderer.autoClear = false;
     this.renderer.outputColorSpace = "srgb-linear"; // the shaders develop on their own
-    this.renderer.setPixelRatio(software ? 1 : Math.min(devicePixelRatio, 2));
+    this.finest = software ? 1 : Math.min(devicePixelRatio, 2);
+    this.renderer.setPixelRatio(this.finest);
     this.film = new Film(software ? 0 : 4);
     this.second = new Film(software ? 0 : 4);
   }
@@ -44,6 +46,12 @@ export class Painter {
   /** What the camera aims at of the canvas. */
   get clear(): Box {
     return this.composed || !this.left ? { x: 0, y: 0, ...this.canvas } : this.left;
+  }
+
+  /** Draws at a fraction of the size of the canvas, to which the browser enlarges it. */
+  scale(by: number): void {
+    const ratio = by * this.finest;
+    if (this.renderer.getPixelRatio() !== ratio) this.renderer.setPixelRatio(ratio);
   }
 
   /** Which looks are drawn, and where. */

@@ -229,8 +229,13 @@ export class Viewer {
     return { x: event.clientX - box.left, y: event.clientY - box.top };
   }
 
-  /** Draws the picture at rest at once, for pictures that are kept. */
+  /** Draws the picture at rest at once. */
   drawNow(): void {
+    this.painter.scale(1);
+    this.drawWhole();
+  }
+
+  private drawWhole(): void {
     const { painter, view, pace } = this;
     this.moved = 0;
     pace.resolved = painter.resolved(view);
@@ -249,7 +254,7 @@ export class Viewer {
     renderer.setSize(width, height, false);
     const { composed } = painter;
     painter.composed = true;
-    this.drawNow();
+    this.drawWhole();
     painter.composed = composed;
     const kept = document.createElement("canvas");
     [kept.width, kept.height] = [width, height];
@@ -289,6 +294,7 @@ export class Viewer {
     } else this.turned = 0;
     const moving = now - this.moved < REST_AFTER;
     if (moving) this.film.drawings = 0;
+    painter.scale(moving && !this.turntable && !painter.composed ? pace.scale : 1); // movies have their full size
     pace.resolved = painter.resolved(view);
     painter.prepare(view, moving);
     const portion = pace.next(moving);

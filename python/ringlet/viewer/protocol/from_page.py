@@ -13,6 +13,7 @@ from ringlet.viewer.protocol.message import (
     FrameNumber,
     Gesture,
     Id,
+    Light,
     Message,
     Place,
     Position,
@@ -264,7 +265,7 @@ class Share(Message):
 
     kind: Literal["share"] = "share"
     camera: list[Coordinate] = Field(min_length=6, max_length=6)
-    light: str = Field(max_length=64)
+    light: Light
     color: str = Field(max_length=64)
     theme: Literal["dark", "light"] = "dark"
 

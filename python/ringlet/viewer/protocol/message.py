@@ -19,6 +19,7 @@ Gesture = Annotated[int, Field(ge=-limits.ID, le=limits.ID)]
 FrameNumber = Annotated[float, Field(ge=-limits.FRAME, le=limits.FRAME)]
 Coordinate = Annotated[float, Field(ge=-1e6, le=1e6)]  # [m]
 Position = tuple[Coordinate, Coordinate, Coordinate]
+Light = Annotated[str, Field(max_length=256)]  # a rig, or the path of an HDRI in the folder of the project
 Side = Literal["a", "b", "c", "d"]  # a look in the picture: the open recipe, and up to three that it is compared with
 
 
@@ -58,7 +59,7 @@ class Shared(Message):
 
     camera: list[Coordinate] = Field(min_length=6, max_length=6)
     focal_length: float = Field(default=85.0, ge=10.0, le=500.0)
-    light: str = Field(max_length=64)
+    light: Light
     light_turn: float = Field(default=0.0, ge=-360.0, le=360.0)
     color: str = Field(max_length=64)
     overlay: str = Field(max_length=64)

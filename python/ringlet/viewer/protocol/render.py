@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from ringlet.viewer.protocol.message import Coordinate, Message, Row
+from ringlet.viewer.protocol.message import Coordinate, Light, Message, Row
 
 Pixels = Annotated[int, Field(ge=16, le=4096)]
 
@@ -16,7 +16,7 @@ class Render(Message):
 
     number: of the render, for the answers
     camera: position and target [m], six numbers
-    focal_length, light_turn: as in ``Shared``
+    focal_length, light, light_turn: as in ``Shared``
     color:  a hair colour; empty for that of the groom
     """
 
@@ -27,7 +27,7 @@ class Render(Message):
     height: Pixels
     samples: int = Field(default=32, ge=1, le=1024)
     focal_length: float = Field(default=85.0, ge=10.0, le=500.0)
-    light: Literal["studio", "window", "sun"] = "studio"
+    light: Light = "studio"
     light_turn: float = Field(default=0.0, ge=-360.0, le=360.0)
     color: str = Field(default="", max_length=64)
 

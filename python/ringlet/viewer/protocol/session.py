@@ -18,7 +18,7 @@ class Welcome(Message):
     schemas:  JSON schemas of ``recipe`` and ``shot``
     recovered: whether the server recovered what pages of an earlier run had not saved
     colors:   linear reflectance in red, green and blue, roughness and azimuthal roughness, of each hair colour
-    rigs:     light rigs of pictures, by name
+    rigs:     light rigs of pictures, by name; HDRIs by their path
     """
 
     kind: Literal["welcome"] = "welcome"
