@@ -13,7 +13,7 @@ sources := pyproject.toml CMakeLists.txt $(wildcard cmake/* python/ringlet/*/__i
 # What the review page is made from.
 page := tools/web.sh $(wildcard web/*.json web/*.ts web/*.html) $(shell find web/src web/public -type f)
 
-.PHONY: help build demo view test blender extension bench docs gallery lint clean
+.PHONY: help build demo view test blender extension arm bench docs gallery lint clean
 
 help: ## list the targets
 	@grep -E '^[a-z]+:.*##' Makefile | sed -E 's/:.*## /\t/' | expand -t 10
@@ -63,6 +63,9 @@ sanitize: .venv/tooled ## the C++ tests with the sanitizers of addresses, undefi
 
 wheel: .venv/tooled ## a wheel for this Python in dist, audited, and tried out in an environment of its own
 	@tools/wheel.sh
+
+arm: .venv/tooled ## cross-built for Linux ARM64 and run by qemu-user: C++ tests, a wheel in dist, Python tests
+	@tools/arm.sh
 
 bench: build ## speed, as JSON
 	@for name in groom strands; do .venv/bin/ringlet bench $$name --json; done

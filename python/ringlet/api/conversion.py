@@ -19,6 +19,7 @@ from ringlet.data.stage import StageSpace
 
 if TYPE_CHECKING:
     from ringlet.data.hair_scene import CurveSet, HairScene
+    from ringlet.io import Rod
 
 __all__ = ["convert"]
 
@@ -40,6 +41,7 @@ def convert(
     fraction: float = 1.0,
     wider: bool = False,
     points: int | None = None,
+    deformable: Path | str | None = None,
 ) -> dict[str, Any]:
     """Converts a file of hair to the format that the suffix of the target names.
 
@@ -47,13 +49,16 @@ def convert(
 
     source_unit, source_up: unit [m] and up-axis of a source that stores neither; by default centimetres for Alembic,
                             else metres, and Y
-    unit, up: unit [m] and up-axis of the target; by default centimetres and Y for Alembic, else those of the source
+    unit, up: unit [m] and up-axis of the target; by default centimetres and Y for Alembic, else those of the source;
+              metres with ``deformable``, as simulators ask for
     only:     leaves the other curves out
     bodies:   writes surfaces too, where the format holds any
     frames:   first and last frame; all by default. A format of one pose holds that of the first, or the rest pose
     fraction: share of the curves to keep, in (0, 1], the same ones every time; with ``wider`` these make up by their
               width for those left out
     points:   points of each curve, evenly spaced along it; as they are by default
+    deformable: a shot, whose ``[strands]`` is the material: writes guides at rest, or hairs where there are none, as
+              elastic rods of the AOUSD proposal for deformable bodies, with surfaces as colliders
 
     Returns numbers of ``hairs``, ``guides``, ``points``, ``bodies`` and ``frames`` that were written, the ``unit`` [m]
     and the axis ``up``, and ``lost``: a sentence for each thing that the format cannot hold.
@@ -64,17 +69,24 @@ def convert(
     if not 0.0 < fraction <= 1.0:
         raise UserError(f"fraction is {fraction:g}; must be more than 0 and at most 1")
     kind = io.format_of(target)
+    rod = None if deformable is None else _rod(deformable, target, frames)
     source_space = source_space_of(source, source_unit, source_up)
     with io.open_scene(source, source_space) as scene:
         check_place(target)
         default = kind.space if kind.several and kind.space else scene.space
+        if rod is not None:
+            default = replace(default, meters_per_unit=1.0)
         space = StageSpace(unit or default.meters_per_unit, up or default.up_axis, scene.space.fps)
         scene = replace(scene, frames=_within(scene, frames, source), bodies=scene.bodies if bodies else [])
         scene.sets = [_thinned(one, fraction, wider, points) for one in _chosen(scene, only, source)]
         one_pose = frames is not None and not kind.several
         if one_pose:
             scene = scene.posed(scene.frames[0])
-        lost = io.write_scene(scene, target, space)
+        if rod is None:
+            lost = io.write_scene(scene, target, space)
+        else:
+            scene, lost = _simulated(scene)
+            io.write_deformable_scene(scene, rod, Path(target), space)
         if one_pose:
             lost.insert(0, f"{kind.name} holds one pose: that of frame {scene.frames[0]:g}")
     written = scene.sets if kind.several else scene.shown
@@ -88,6 +100,38 @@ def convert(
         "up": space.up_axis,
         "lost": lost,
     }
+
+
+def _rod(shot: Path | str, target: Path | str, frames: tuple[int, int] | None) -> Rod:
+    """The material of a shot's strands, for a target that holds rods; raises UserError for another target."""
+    from ringlet import io
+    from ringlet.shot import read_shot
+
+    if io.format_of(target).name != "USD":
+        raise UserError(f"{target}: holds no deformable curves; must be a .usdc, .usd or .usda file")
+    if frames is not None:
+        raise UserError(f"frames {frames[0]} to {frames[1]}: deformable curves are written at rest; leave them out")
+    material = read_shot(shot).strands
+    stretch = material.youngs_modulus * np.pi * material.radius**2
+    bend = material.bend_scale * stretch * material.radius**2 / 4
+    return io.Rod(
+        radius=material.radius,
+        density=material.density,
+        stretch=material.stretch_scale * stretch,
+        bend=bend,
+        twist=material.twist_ratio * bend,
+    )
+
+
+def _simulated(scene: HairScene) -> tuple[HairScene, list[str]]:
+    """Guides at rest, or hairs where there are none, with surfaces at rest; and what is left out."""
+    sets = [one for one in scene.sets if one.guide] or scene.sets
+    hairs = sum(len(one.curves) for one in scene.sets if one not in sets)
+    lost = [f"deformable curves are guides: without {hairs:,} hairs"] if hairs else []
+    if any(clip for _, clip in scene.bodies):
+        lost.append(f"deformable curves are at rest: without the motion of {len(scene.frames)} frames")
+    at_rest = replace(scene, sets=sets, bodies=[(mesh, None) for mesh, _ in scene.bodies], frames=np.empty(0))
+    return at_rest.posed(None), lost
 
 
 def source_space_of(source: Path | str, unit: float | None, up: Literal["Y", "Z"] | None) -> StageSpace | None:

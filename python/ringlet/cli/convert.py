@@ -46,6 +46,15 @@ def convert(
             show_default=False,
         ),
     ] = None,
+    deformable: Annotated[
+        Path | None,
+        typer.Option(
+            "--deformable",
+            metavar="SHOT",
+            help="Write elastic rods of the material of this shot, in the schema that Newton imports.",
+            show_default=False,
+        ),
+    ] = None,
     as_json: Json = False,
     threads: Threads = None,
 ) -> None:
@@ -70,6 +79,7 @@ def convert(
         fraction=fraction,
         wider=wider,
         points=points,
+        deformable=deformable,
     )
     counts = {name: done[name] for name in ("hairs", "guides", "points", "bodies", "frames")}
     if as_json:

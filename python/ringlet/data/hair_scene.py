@@ -48,8 +48,8 @@ class HairScene:
     frames: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
     space: StageSpace = field(default_factory=StageSpace)
 
-    def posed(self, frame: float) -> HairScene:
-        """The scene as it stands at a frame: its curves do not move."""
+    def posed(self, frame: float | None) -> HairScene:
+        """The scene as it stands at a frame, or at rest for None: its curves do not move."""
         sets = [replace(one, curves=one.curves.with_points(one.points(frame)), motion=None) for one in self.sets]
         return replace(self, sets=sets)
 

@@ -6,6 +6,7 @@ from ringlet.io.texture import read_texture
 from ringlet.io.usd.cache import CacheFile, CacheWriter, cache_groom_path, is_cache, open_cache, read_cache, write_cache
 from ringlet.io.usd.camera import camera_paths, read_camera
 from ringlet.io.usd.check import problems
+from ringlet.io.usd.deformable import Rod, write_deformable_scene
 from ringlet.io.usd.groom import as_written, is_groom, read_groom, write_groom
 from ringlet.io.usd.hairs import HairWriter, read_hair_frames, read_hairs, read_stage
 from ringlet.io.usd.head import head_path, write_head
@@ -29,6 +30,7 @@ __all__ = [
     "HairWriter",
     "OnDemandWriter",
     "PolygonMesh",
+    "Rod",
     "as_written",
     "cache_groom_path",
     "camera_paths",
@@ -65,6 +67,7 @@ __all__ = [
     "surface_paths",
     "unread_surfaces",
     "write_cache",
+    "write_deformable_scene",
     "write_groom",
     "write_head",
     "write_offsets",

@@ -66,7 +66,7 @@ std::vector<int> thin_out(View<Vec3> candidates, double area, int count) {
         }
         gone[i] = 1;
         --left;
-        grid.near(i, [&](int j) {
+        grid.near(i, [&, i = i](int j) { // Clang with OpenMP captures structured bindings only by copies
             if (!gone[j]) weight[j] -= crowding(i, j);
         });
     }
