@@ -56,10 +56,14 @@ mesh = "/adult/skin"
 PAGE_FOOT = """
 ## What a groomer would still refuse
 
-- Wash-and-go: highlights of coils read as beads.
-- Locs: at part lines, hair gathers in tufts, without new growth that stands.
-- Cornrows and flat twists: the tail of the shortest row hangs over the ear.
-- Cornrows and flat twists on the adult: rows turn aside at their last centimetre, at the nape.
+- Wash-and-go: coils are of one size near the part, and their highlights read as beads.
+- Box braids: at the roots, hair gathers in pointed tufts, and two braids hang off the cheek.
+- Locs: at part lines, hair gathers in tufts, without new growth that stands; ridges along a loc are too even.
+- Cornrows: hairs that join the lower rows stand off like the teeth of a comb; rows begin as blunt as a brush.
+- Flat twists: the rows over the ears are wide and begin as blunt as a brush.
+- Cornrows and flat twists: tails of neighbouring rows overlap at the nape.
+- On the adult, rows turn aside at their last centimetre, at the nape. Strands of the cornrow over its right ear overlap
+  one another.
 """
 
 

@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 from ringlet.data.groom import SECTION, STRAND_RADIUS
 from ringlet.data.pigment import curve_reflectance
-from ringlet.groom.operators.operator import grid
+from ringlet.groom.check import KINDS, Allowed, Bodies, find, lock_of
+from ringlet.groom.operators.operator import arc_lengths, grid
 from ringlet.groom.operators.tied import TO_TIE
 from ringlet.groom.scalp import Scalp
-from ringlet.groom.shares import REACH
+from ringlet.groom.sections import STRAND
+from ringlet.groom.shares import LAID, REACH
 
 import ringlet
 from ringlet.groom import PRESETS, grooms_of, hairs_per_cm2, make_hairs, read_recipe
@@ -17,6 +19,7 @@ from ringlet.groom import PRESETS, grooms_of, hairs_per_cm2, make_hairs, read_re
 EXAMPLES = Path(__file__).parents[2] / "examples"
 LOOKS = sorted((EXAMPLES / "looks").glob("*.recipe.toml"))
 TIED_LOOKS = [recipe for recipe in LOOKS if 'op = "tie"' in recipe.read_text()]
+EAR = 0.365  # height of the middle of an ear [m]
 WOVEN_LOOKS = [recipe for recipe in LOOKS if "strands =" in recipe.read_text()]
 
 
@@ -39,6 +42,20 @@ def test_no_row_takes_hair_from_farther_than_its_width(look):
     recipe = EXAMPLES / "looks" / f"{look}.recipe.toml"
     reach = ringlet.build_groom(recipe).locks.curve[REACH]
     assert 0.0 < reach.max() < 0.85 * read_recipe(recipe).locks.sections.size
+
+
+@pytest.mark.parametrize("look", ["cornrows", "flat_twists"])
+def test_tails_of_rows_leave_the_ears_free_and_no_skin_presses_their_strands_into_each_other(look):
+    groom = ringlet.build_groom(EXAMPLES / "looks" / f"{look}.recipe.toml")
+    locks, points = groom.locks, grid(groom.locks)
+    shortest = locks.curve[LAID] < 0.09
+    assert shortest.sum() == 2 * (locks.curve[STRAND].max() + 1)
+    assert points[shortest, -1, 1].min() > EAR
+    found = find(locks, Bodies(groom, []), Allowed())
+    pair = np.stack([found.point, found.other], axis=1)[found.kind == KINDS.index("hair")]
+    beyond = (arc_lengths(points) > locks.curve[LAID][:, None]).ravel()
+    section = locks.curve[SECTION][lock_of(locks, pair.ravel())].reshape(pair.shape)
+    assert not (beyond[pair].all(axis=1) & (section[:, 0] == section[:, 1])).any()
 
 
 @pytest.mark.parametrize("recipe", TIED_LOOKS, ids=name)

@@ -18,11 +18,13 @@ from ringlet.groom import felt, weave
 from ringlet.groom.operators.operator import UP, Context, arc_lengths, evenly, grid, unit
 from ringlet.groom.operators.woven import JOIN, Braided, Woven
 from ringlet.groom.rows import Row, drawn_rows, middle_rows
+from ringlet.groom.scalp import Scalp
 from ringlet.groom.sections import Division
 from ringlet.groom.shares import LAID, REACH, row_reaches
 
 TAIL_POINTS = 40
 OFF = 0.35  # how much the tail heads away from the scalp where it leaves it, as a part of its direction
+SKIN_MARGIN = 1e-3  # [m] between the tail and bodies
 ROOTS_APART = 1.8  # of a row's strands, in radii of a strand
 
 
@@ -88,7 +90,8 @@ class Cornrow(Woven):
 
         shapes, points = grid(fine).copy(), grid(fine).shape[1]
         for k, (row, of) in enumerate(zip(lain, rows, strict=True)):
-            shapes[of] = evenly(_with_tail(row, row.points, values["length"][k], values["gravity_bend"][k])[0], points)
+            line, _ = _with_tail(row, row.points, values["length"][k], values["gravity_bend"][k], context.scalp, 0.0)
+            shapes[of] = evenly(line, points)
         fine = fine.with_points(np.ascontiguousarray(shapes.reshape(-1, 3)))
         core = (CORE,) if self.simulate == "core" else ()
         attributes = _attributes(fine, (STRAND_RADIUS, JOIN, LAID, *core))
@@ -133,7 +136,8 @@ class Cornrow(Woven):
         size = self.width.along(along / braid.length)
         lift = (size * abs(braid.front) + braid.radius) * t * t * (3.0 - 2.0 * t)
         skin = row.points + lift[:, None] * row.normals
-        line, normals = _with_tail(row, skin, length, gravity_bend)
+        clearance = braid.across + braid.radius + SKIN_MARGIN
+        line, normals = _with_tail(row, skin, length, gravity_bend, scalp, clearance)
         line, front = evenly(line, points), _along(line, normals, points)
         tangent = unit(np.gradient(line, axis=0))
         front = unit(front - np.sum(front * tangent, axis=1, keepdims=True) * tangent)
@@ -159,16 +163,23 @@ def _attributes(curves: Curves, names: Sequence[str]) -> dict[str, NDArray]:
 
 
 def _with_tail(
-    row: Row, skin: NDArray, length: float, gravity_bend: float
+    row: Row, skin: NDArray, length: float, gravity_bend: float, scalp: Scalp, clearance: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Points above a row and of a tail after it [m], and the normals of the scalp, transported along the tail."""
+    """Points above a row and of a tail after it [m], and the normals of the scalp, transported along the tail.
+
+    clearance: least distance of the tail from bodies [m]. The tail moves as a whole: strands that were moved out one
+    by one would be pressed into each other.
+    """
     start = unit(unit(skin[-1] - skin[-3]) + OFF * row.normals[-1])
     u = (np.arange(TAIL_POINTS) + 0.5) / TAIL_POINTS
     edges = length / TAIL_POINTS * unit(start - (gravity_bend * u)[:, None] * UP)
     tail = skin[-1] + np.cumsum(edges, axis=0)
     line = np.ascontiguousarray(np.concatenate([skin[-1:], tail]))
-    first = np.ascontiguousarray(row.normals[-1:])
-    normals = _core.curve_frames(line, np.array([0, len(line)], np.int32), first)[1:, :, 0]
+    offsets, first = np.array([0, len(line)], np.int32), np.ascontiguousarray(row.normals[-1:])
+    if clearance > 0.0:
+        line = _core.push_out(line, offsets, scalp.bodies, clearance)
+        tail = line[1:]
+    normals = _core.curve_frames(line, offsets, first)[1:, :, 0]
     return np.concatenate([skin, tail]), np.concatenate([row.normals, normals])
 
 
