@@ -49,7 +49,7 @@ Mat3 frame(const Vec3 &u, const Vec3 &v) {
 // and the line to the other where they are almost parallel. The normal does not tell, since it also turns as the closest points
 // wander over a surface.
 Mat3 rotation(const Contact &contact, View<Vec3> start, View<Vec3> end) {
-    const auto &[p, q, r, s] = contact.vertex;
+    const int p = contact.vertex[0], q = contact.vertex[1], r = contact.vertex[2], s = contact.vertex[3];
     const auto turned = [&](const auto &frame_of) { return Mat3(frame_of(end) * frame_of(start).transpose()); };
     if (!contact.edge_edge()) return turned([&](View<Vec3> x) { return frame(x[r] - x[q], x[s] - x[q]); });
     const auto almost_parallel = [&](View<Vec3> x) {

@@ -46,7 +46,7 @@ void for_contact_points(const CollisionMesh &mesh, const ContactPair &pair, View
         return work(ContactPoint{pair.closest, 1.0, 0});
     const auto [a0, a1] = mesh.edges[pair.primitive[0]];
     const auto [b0, b1] = mesh.edges[pair.primitive[1]];
-    const Vec3 a = positions[a1] - positions[a0], b = positions[b1] - positions[b0];
+    const Vec3 p = positions[a0], q = positions[b0], a = positions[a1] - p, b = positions[b1] - q;
     const double aa = a.squaredNorm(), bb = b.squaredNorm(), sine2 = a.cross(b).squaredNorm();
     const double s = std::min(sine2 / (contact_settings::parallel_sine2 * aa * bb + 1e-300), 1.0),
                  crossing = s * s * (3.0 - 2.0 * s);
@@ -54,13 +54,13 @@ void for_contact_points(const CollisionMesh &mesh, const ContactPair &pair, View
     if (crossing == 1.0) return;
     const double share = 0.5 * (1.0 - crossing); // two of the four ends lie beside the other edge, as a rule
     const auto at = [&](double u, double v, int number) {
-        const double distance2 = (positions[a0] + u * a - positions[b0] - v * b).squaredNorm();
+        const double distance2 = (p + u * a - q - v * b).squaredNorm();
         work(ContactPoint{{{1.0 - u, u, v - 1.0, -v}, distance2}, share, number});
     };
     for (const double end : {0.0, 1.0})
-        at(end, closest::fraction((positions[a0] + end * a - positions[b0]).dot(b), bb), 1 + int(end));
+        at(end, closest::fraction((p + end * a - q).dot(b), bb), 1 + int(end));
     for (const double end : {0.0, 1.0})
-        at(closest::fraction((positions[b0] + end * b - positions[a0]).dot(a), aa), end, 3 + int(end));
+        at(closest::fraction((q + end * b - p).dot(a), aa), end, 3 + int(end));
 }
 
 } // namespace ringlet

@@ -58,7 +58,8 @@ std::vector<int> thin_out(View<Vec3> candidates, double area, int count) {
     for (int i = 0; i < total; ++i) queue.emplace(weight[i], i);
     std::vector<char> gone(total, 0);
     for (int left = total; left > count;) {
-        const auto [value, i] = queue.top();
+        const double value = queue.top().first;
+        const int i = queue.top().second;
         queue.pop();
         if (value > weight[i]) {
             queue.emplace(weight[i], i);
@@ -66,7 +67,7 @@ std::vector<int> thin_out(View<Vec3> candidates, double area, int count) {
         }
         gone[i] = 1;
         --left;
-        grid.near(i, [&, i = i](int j) { // Clang with OpenMP captures structured bindings only by copies
+        grid.near(i, [&](int j) {
             if (!gone[j]) weight[j] -= crowding(i, j);
         });
     }
