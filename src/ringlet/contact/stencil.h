@@ -57,10 +57,8 @@ void for_contact_points(const CollisionMesh &mesh, const ContactPair &pair, View
         const double distance2 = (p + u * a - q - v * b).squaredNorm();
         work(ContactPoint{{{1.0 - u, u, v - 1.0, -v}, distance2}, share, number});
     };
-    for (const double end : {0.0, 1.0})
-        at(end, closest::fraction((p + end * a - q).dot(b), bb), 1 + int(end));
-    for (const double end : {0.0, 1.0})
-        at(closest::fraction((q + end * b - p).dot(a), aa), end, 3 + int(end));
+    for (const double end : {0.0, 1.0}) at(end, closest::fraction((p + end * a - q).dot(b), bb), 1 + int(end));
+    for (const double end : {0.0, 1.0}) at(closest::fraction((q + end * b - p).dot(a), aa), end, 3 + int(end));
 }
 
 } // namespace ringlet
