@@ -68,6 +68,10 @@ def test_frames_are_played_between_in_and_out_points_at_a_rate(opened: Any):
     assert "plays 2 to 3" in review.page.locator(".frame-readout").inner_text()
     canvas.press("End")
     assert review.get("ringlet.timeline.current") == 3
+    camera = review.get("ringlet.viewer.camera.position.toArray()")
+    review.page.get_by_label("Frame", exact=True).press("ArrowLeft")  # steps, and does not orbit
+    assert review.get("ringlet.timeline.current") == 2
+    assert review.get("ringlet.viewer.camera.position.toArray()") == camera
     review.get("(window.played = new Set(), setInterval(() => played.add(ringlet.timeline.current), 5))")
     review.page.get_by_label("Playback rate (frames per second)").select_option("60")
     canvas.press(" ")

@@ -25,6 +25,7 @@ const OWN: [Key["section"], string, string][] = [
   ["Groom", "Arrows, Shift with arrows", "change the number that has the focus; finer"],
   ["Groom", "Arrows, Enter, Delete", "move a point of a ramp, add one, remove it"],
   ["Groom", "Arrows", "move a handle of an isolated lock"],
+  ["Frames", "Arrows", "previous frame, next frame, where the timeline has the focus"],
 ];
 
 export function bindKey(key: Key): void {
