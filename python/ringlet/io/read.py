@@ -118,5 +118,5 @@ def _has_suffix(path: Path, *suffixes: str) -> bool:
 def _without_prim(path: Path, prim: str | None) -> Path:
     """Returns the path of a format without prims; raises UserError when one is named."""
     if prim is not None:
-        raise UserError(f"{path}: has no prims such as {prim}; leave it out")
+        raise UserError(f"{path}: has no prims such as {prim}; leave it out (false in a variant)")
     return path
