@@ -81,6 +81,7 @@ class Review:
         )
         page.goto(address)
         self.until("window.ringlet?.viewer.hair.a.table && ringlet.model.settled")
+        self.laid_out()
 
     def get(self, expression: str) -> Any:
         return self.page.evaluate(f"() => {expression}")

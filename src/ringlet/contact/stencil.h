@@ -46,7 +46,7 @@ void for_contact_points(const CollisionMesh &mesh, const ContactPair &pair, View
         return work(ContactPoint{pair.closest, 1.0, 0});
     const auto [a0, a1] = mesh.edges[pair.primitive[0]];
     const auto [b0, b1] = mesh.edges[pair.primitive[1]];
-    const Vec3 p = positions[a0], q = positions[b0], a = positions[a1] - p, b = positions[b1] - q;
+    const Vec3 &p = positions[a0], &q = positions[b0], a = positions[a1] - p, b = positions[b1] - q;
     const double aa = a.squaredNorm(), bb = b.squaredNorm(), sine2 = a.cross(b).squaredNorm();
     const double s = std::min(sine2 / (contact_settings::parallel_sine2 * aa * bb + 1e-300), 1.0),
                  crossing = s * s * (3.0 - 2.0 * s);
