@@ -111,6 +111,7 @@ def test_answers_overwrite_no_note_that_is_typed_and_no_picture_that_is_moved(op
     page.get_by_role("tab", name="References").click()
     page.locator("input[type=file]").set_input_files(tmp_path / "photo.png")
     review.until("document.querySelector('.reference')?.naturalWidth == 60")
+    review.laid_out()
     size = page.get_by_label("size of ‘photo.png’")
     size.focus()
     box = page.locator(".reference").bounding_box()
