@@ -92,7 +92,7 @@ def run(
     Of a picture while the camera orbits:
 
     picture:  from the begin of a drawing until the graphics card reports it as done
-    script:   the page's own share of that, also the least and the most, with light that is computed again
+    script:   the page's own share of that, also the least, and the most: with light that is computed again
     server:   processor time of the server in the same time
     """
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
@@ -130,7 +130,7 @@ def run(
                 "picture_ms": statistics.median([took for took, _ in drawn]),
                 "script_ms": statistics.median(scripts),
                 "least_script_ms": min(scripts),
-                "lit_script_ms": max(scripts),
+                "most_script_ms": max(scripts),
                 "server_ms": (processor_ms(server) - before) / pictures,
                 "hairs_drawn": statistics.median([shown for _, shown in drawn]),
             }
