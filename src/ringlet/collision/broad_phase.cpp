@@ -103,6 +103,7 @@ void BroadPhase::find(const SweptBoxes &boxes, Candidates &candidates, View<unsi
 void BroadPhase::find_escaped(const SweptBoxes &move, const SweptBoxes &bounds, View<unsigned char> escaped,
                               View<unsigned char> changed, Candidates &candidates) {
     stale_ = unbounded_;
+#pragma omp parallel for schedule(static)
     for (size_t v = 0; v < escaped.size(); ++v) {
         const bool leaves = escaped[v] && &move != &bounds;
         stale_[v] |= leaves || changed[v];

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ringlet/collision/mesh.h"
+#include "ringlet/math/collect.h"
 #include "ringlet/math/lists.h"
 
 #include <numeric>
@@ -44,19 +45,20 @@ struct MeshSubset {
     }
 
     MeshSubset(const CollisionMesh &mesh, const Incidence &incidence, View<unsigned char> marked) {
-        const auto add = [&](int v, const VertexLists &lists, const auto &primitives, std::vector<int> &subset) {
-            for (const int i : lists.of(v)) {
-                const auto first =
-                    std::find_if(primitives[i].begin(), primitives[i].end(), [&](int w) { return marked[w] != 0; });
-                if (*first == v) subset.push_back(i);
-            }
+        const auto with_marked = [&](const VertexLists &lists, const auto &primitives) {
+            return collect<int>(int(vertices.size()), [&](int k, std::vector<int> &subset) {
+                for (const int i : lists.of(vertices[k])) {
+                    const auto first =
+                        std::find_if(primitives[i].begin(), primitives[i].end(), [&](int w) { return marked[w] != 0; });
+                    if (*first == vertices[k]) subset.push_back(i);
+                }
+            });
         };
-        for (int v = 0; v < int(marked.size()); ++v)
-            if (marked[v]) {
-                vertices.push_back(v);
-                add(v, incidence.edges, mesh.edges, edges);
-                add(v, incidence.triangles, mesh.triangles, triangles);
-            }
+        vertices = collect<int>(int(marked.size()), [&](int v, std::vector<int> &subset) {
+            if (marked[v]) subset.push_back(v);
+        });
+        edges = with_marked(incidence.edges, mesh.edges);
+        triangles = with_marked(incidence.triangles, mesh.triangles);
     }
 };
 

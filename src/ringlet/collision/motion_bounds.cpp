@@ -1,5 +1,7 @@
 #include "ringlet/collision/motion_bounds.h"
 
+#include "ringlet/math/collect.h"
+
 #include <algorithm>
 
 namespace ringlet {
@@ -16,13 +18,11 @@ std::array<Vec3, 3> enclosed(const Move &move, double max_path, int v) {
 } // namespace
 
 std::vector<int> MotionBounds::outside(const Move &move, double max_path, double slack) const {
-    std::vector<int> vertices;
-    for (int v = 0; v < int(move.start.size()); ++v) {
+    return collect<int>(int(move.start.size()), [&](int v, std::vector<int> &vertices) {
         const std::array<Vec3, 3> corners = enclosed(move, max_path, v);
         if (empty() || std::any_of(corners.begin(), corners.end(), [&](const Vec3 &x) { return leaves(v, x, slack); }))
             vertices.push_back(v);
-    }
-    return vertices;
+    });
 }
 
 void MotionBounds::fit_vertex(const Move &move, const Fit &how, int v) {
@@ -33,6 +33,7 @@ void MotionBounds::fit_vertex(const Move &move, const Fit &how, int v) {
 
 void MotionBounds::fit(const Move &move, const Fit &how) {
     low_.resize(move.start.size()), high_.resize(move.start.size());
+#pragma omp parallel for schedule(static)
     for (int v = 0; v < int(low_.size()); ++v) fit_vertex(move, how, v);
     boxes_.fit_static(low_, high_);
 }

@@ -46,6 +46,13 @@ public:
             if (active_[b]) work(b);
     }
 
+    // Calls work(object) for those of the active blocks, in parallel.
+    template <class Work> void for_active_objects(const Work &work) const {
+        for_active([&](int b) {
+            for (const BlockObject &object : blocks_[b]->objects()) work(object);
+        });
+    }
+
     // Vectors of all unknowns.
     size_t size() const { return begin_.back(); } // in doubles
     size_t begin(int block) const { return begin_[block]; }

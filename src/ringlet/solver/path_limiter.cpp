@@ -13,13 +13,12 @@ double fraction_of(const Vec3 &now, const Vec3 &wanted, const Vec3 &to) {
 }
 
 // The least fraction of its move that is left to each object.
-std::vector<double> fractions_left(const VertexTable &table, View<Vec3> now, View<Vec3> wanted, View<Vec3> to) {
-    std::vector<double> left(table.objects, 1.0);
-    for (int v = 0; v < table.dynamic_vertices; ++v) {
-        if (to[v] == wanted[v]) continue;
-        double &of = left[table.mesh.object[v]];
-        of = std::min(of, fraction_of(now[v], wanted[v], to[v]));
-    }
+std::vector<double> fractions_left(const BlockSet &blocks, View<Vec3> now, View<Vec3> wanted, View<Vec3> to) {
+    std::vector<double> left(blocks.objects(), 1.0);
+    blocks.for_active_objects([&](const BlockObject &object) {
+        for (int v = object.first; v < object.end; ++v)
+            if (to[v] != wanted[v]) left[object.number] = std::min(left[object.number], fraction_of(now[v], wanted[v], to[v]));
+    });
     return left;
 }
 
@@ -27,6 +26,7 @@ std::vector<double> fractions_left(const VertexTable &table, View<Vec3> now, Vie
 void set_end_of_path(const BlockSet &blocks, const VertexTable &table, View<Vec3> now, const AlignedVector &x,
                      const SearchPath &path, AlignedVector &end, std::vector<Vec3> &to, std::vector<Vec3> &apex) {
     move_along(blocks, x, std::vector<double>(table.objects, 1.0), path, std::vector<unsigned char>(table.objects, 1), end);
+#pragma omp parallel for schedule(static)
     for (int v = 0; v < table.dynamic_vertices; ++v) {
         if (!table.mesh.moves[v]) continue;
         to[v] = blocks.position(end, v);
@@ -38,17 +38,18 @@ void set_end_of_path(const BlockSet &blocks, const VertexTable &table, View<Vec3
 void take_limited(const BlockSet &blocks, const VertexTable &table, View<Vec3> now, View<Vec3> wanted, View<Vec3> to,
                   SearchPath &path) {
     std::vector<unsigned char> limited(table.objects, 0);
-    for (int v = 0; v < table.dynamic_vertices; ++v)
-        if (to[v] != wanted[v]) limited[table.mesh.object[v]] = 1;
-    for (int v = 0; v < table.dynamic_vertices; ++v) {
-        if (!limited[table.mesh.object[v]] || !table.mesh.moves[v]) continue;
-        const double left = to[v] == wanted[v] ? 1.0 : fraction_of(now[v], wanted[v], to[v]);
-        const auto [first, stride] = blocks.slot(v);
-        for (int k = 0; k < blocks.dofs(v); ++k) {
-            const size_t i = size_t(first) + size_t(k) * stride;
-            path.straight[i] = left * (path.straight[i] + path.bend[i]);
+    blocks.for_active_objects([&](const BlockObject &object) {
+        limited[object.number] = !std::equal(to.begin() + object.first, to.begin() + object.end, wanted.begin() + object.first);
+        for (int v = object.first; limited[object.number] && v < object.end; ++v) {
+            if (!table.mesh.moves[v]) continue;
+            const double left = to[v] == wanted[v] ? 1.0 : fraction_of(now[v], wanted[v], to[v]);
+            const auto [first, stride] = blocks.slot(v);
+            for (int k = 0; k < blocks.dofs(v); ++k) {
+                const size_t i = size_t(first) + size_t(k) * stride;
+                path.straight[i] = left * (path.straight[i] + path.bend[i]);
+            }
         }
-    }
+    });
     straighten(blocks, limited, path);
 }
 
@@ -66,7 +67,7 @@ PlannedMove limit_path(const Objective &objective, Configuration &configuration,
     move.to = wanted;
     configuration.limit(move, {.whole = true, .lasts = lasts}, report);
 
-    std::vector<double> left = fractions_left(table, now, wanted, move.to);
+    std::vector<double> left = fractions_left(blocks, now, wanted, move.to);
     std::vector<unsigned char> straight(table.objects, 0), limited(table.objects, 0), changed(table.count(), 0);
     for (int object = 0; object < table.objects; ++object) {
         limited[object] = left[object] < 1.0;
@@ -77,6 +78,7 @@ PlannedMove limit_path(const Objective &objective, Configuration &configuration,
     shorten(blocks, left, path);
 
     set_end_of_path(blocks, table, now, x, path, end, wanted, move.apex);
+#pragma omp parallel for schedule(static)
     for (int v = 0; v < table.dynamic_vertices; ++v)
         if (table.mesh.moves[v] && limited[table.mesh.object[v]]) changed[v] = 1, move.to[v] = wanted[v];
     configuration.limit_again(move, whole, changed, report);

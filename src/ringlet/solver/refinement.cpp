@@ -13,12 +13,14 @@ Refinement::Refinement(const Objective &objective)
 void Refinement::add_move(View<Vec3> now, View<Vec3> wanted, View<Vec3> to) {
     std::fill(length_.begin(), length_.end(), 0.0);
     std::fill(fraction_.begin(), fraction_.end(), 1.0);
-    for (int v = 0; v < objective_.table.dynamic_vertices; ++v) {
-        const int object = objective_.table.mesh.object[v];
-        const double length = (wanted[v] - now[v]).norm();
-        length_[object] = std::max(length_[object], length);
-        if (length > 0.0) fraction_[object] = std::min(fraction_[object], (to[v] - now[v]).norm() / length);
-    }
+    objective_.blocks.for_active_objects([&](const BlockObject &object) {
+        double &longest = length_[object.number], &least = fraction_[object.number];
+        for (int v = object.first; v < object.end; ++v) {
+            const double length = (wanted[v] - now[v]).norm();
+            longest = std::max(longest, length);
+            if (length > 0.0) least = std::min(least, (to[v] - now[v]).norm() / length);
+        }
+    });
 }
 
 void Refinement::add_steps(const std::vector<double> &t) {
