@@ -119,6 +119,8 @@ def slider(_folder: Path) -> dict:
         "length": own.recipe_guides.length__value,
         "before": size(head),
         "material": own.hair_curves.data.materials[0].node_tree.nodes["Ringlet hair"].parametrization,
+        "viewport": list(own.hair_curves.data.materials[0].diffuse_color),
+        "subdivisions": bpy.context.scene.render.hair_subdiv,
     }
     own.recipe_hairs.per_lock__value = 8
     of("timer").tick()  # asks for the groom; the fraction changes before it is there

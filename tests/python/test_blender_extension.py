@@ -104,6 +104,8 @@ def test_a_groom_from_scratch_follows_a_slider_undo_and_redo(act):
     assert found["message"] == "" and found["counts"]["locks"] == 24
     assert found["curves"] == [14, 24, found["counts"]["hairs"]]
     assert found["surface"] == "Kim" and found["material"] == "MELANIN"
+    red, green, blue, opaque = found["viewport"]
+    assert 0.3 > red > green > blue > 0.0 and opaque == 1.0 and found["subdivisions"] == 3
     assert found["all hairs"] == 24 * 8  # the fraction of the panel counts, though it was set during a groom
     assert found["roots"] < 0.005 and found["lowest root"] > -0.01  # on the facets of the vertex group
     assert found["length"] == pytest.approx(0.05) and found["after"] > found["before"] + 0.03

@@ -272,15 +272,17 @@ def _take(name: str, sent: tuple[str, str], inputs: str, message: Message) -> No
 def show(head: bpy.types.Object, message: Message) -> None:
     """Shows the curves of a groom as children of the head."""
     arrays, hairs = message.arrays, any(name.startswith("hairs/") for name in message.arrays)
+    color, fiber = message.header["settings"].get("color"), message.header["fiber"]
+    dyed = color is not None and (color.get("dye") is not None or bool(color["dyes"]))
     made = material.hair_material(
         f"{head.name} hair",
-        message.header["fiber"],
+        fiber,
+        material.viewport_color(_own(arrays, "hairs" if hairs else "locks"), fiber, dyed=dyed),
         pigments=any(name.endswith("/melanin") for name in arrays),
-        dyed=message.header["settings"].get("color") is not None
-        and (message.header["settings"]["color"].get("dye") is not None or message.header["settings"]["color"]["dyes"]),
+        dyed=dyed,
     )
     for name, pointer in SHOWN.items():
-        own = {key.removeprefix(f"{name}/"): values for key, values in arrays.items() if key.startswith(f"{name}/")}
+        own = _own(arrays, name)
         thing = getattr(head.ringlet, pointer)
         if not own:
             if thing is not None:
@@ -293,6 +295,7 @@ def show(head: bpy.types.Object, message: Message) -> None:
             setattr(head.ringlet, pointer, thing)
             thing.hide_viewport = thing.hide_render = name != "hairs" and (hairs or name == "guides")
             thing.data.materials.append(made)
+            curves.draw_curls(bpy.context.scene)
         curves.set_curves(thing.data, material.with_pigments(own))
         thing.data.surface = head
         if head.data.uv_layers.active:
@@ -301,6 +304,11 @@ def show(head: bpy.types.Object, message: Message) -> None:
         thing.matrix_parent_inverse = rest_matrix(head).inverted()
     if (locks := head.ringlet.lock_curves) is not None and head.ringlet.lock_motion is None:
         locks.hide_viewport = locks.hide_render = hairs
+
+
+def _own(arrays: dict[str, np.ndarray], name: str) -> dict[str, np.ndarray]:
+    """The arrays of some curves."""
+    return {key.removeprefix(f"{name}/"): values for key, values in arrays.items() if key.startswith(f"{name}/")}
 
 
 def sync_operators(head: bpy.types.Object, settings: dict) -> None:
