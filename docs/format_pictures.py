@@ -12,12 +12,11 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 from ringlet.data.camera import Camera
 from ringlet.data.curves import Curves
 from ringlet.data.detail import HAIR_PIXELS, LEVELS
 from ringlet.data.pigment import DYE, DYE_AMOUNT, MELANIN
-from ringlet.io import open_scene
+from ringlet.io import open_scene, read_stage
 from ringlet.picture import PosedBody
 from ringlet.picture.sheet import arrange_tiles, draw_tile, frame_all
 from ringlet.picture.strands import hair_widths
@@ -26,6 +25,7 @@ import ringlet
 
 ROOT = Path(__file__).parents[1]
 IMAGES = ROOT / "docs/images"
+VIEW = (28.0, 6.0)  # degrees
 SAMPLES = 24
 LARGE = 300  # of a tile [pixels]
 Seen = tuple[Sequence[PosedBody], Curves]
@@ -35,8 +35,8 @@ def adopted(folder: Path) -> None:
     """Hair of a file without names of clumps: as given, its locks, with wider curls, and in motion."""
     known = folder / "known.recipe.toml"
     known.write_text(
-        f'ringlet = 2\nextends = "{ROOT}/examples/types/3C.recipe.toml"\n[locks]\ncount = 500\n'
-        "[hairs]\ndensity = false\nper_lock = 12\n"
+        f'ringlet = 2\nextends = "{ROOT}/examples/types/3C.recipe.toml"\n[locks]\ncount = 600\n'
+        '[hairs]\ndensity = false\nper_lock = 16\nwidth = "0.2 mm"\n'
     )
     recipe = ringlet.read_recipe(known)
     ringlet.write_groom(ringlet.build_groom(recipe), folder / "groom.usdc")
@@ -44,24 +44,24 @@ def adopted(folder: Path) -> None:
     ringlet.convert(folder / "all.usdc", folder / "hair.hair", only="hairs", unit=1.0)
     ringlet.adopt(folder / "hair.hair", folder / "adopted.recipe.toml", head=recipe.scalp_file)
     tiles = {"the given hairs": _with(folder / "hair.hair", folder / "all.usdc")}
-    tiles |= _adopted(folder, wider=2.0, frame=16)
-    _save("adopted", tiles, (300, 330), (28.0, 6.0))
+    tiles |= _adopted(folder, head(), wider=2.0, frame=16)
+    _save("adopted", tiles, (300, 330), VIEW)
 
 
 def game(folder: Path, file: Path) -> None:
     """Hair of a game: as given, straightened by a setting, and in motion."""
     ringlet.adopt(file, folder / "adopted.recipe.toml")
     tiles = {"the given hairs": _with(file)}
-    tiles |= _adopted(folder, wider=None, frame=16)
+    tiles |= _adopted(folder, [], wider=None, frame=16)
     _save("adopted_game", tiles, (300, 330), (60.0, 10.0))
 
 
-def _adopted(folder: Path, wider: float | None, frame: int) -> dict[str, Seen]:
+def _adopted(folder: Path, bodies: list[PosedBody], wider: float | None, frame: int) -> dict[str, Seen]:
     """Hairs of an adopted recipe: in a colour for each lock, with wider curls, and at a frame of the nod."""
     path = folder / "adopted.recipe.toml"
     groom = ringlet.build_groom(path)
     hairs = ringlet.build_hairs(groom).curves
-    bodies = [PosedBody(groom.scalp, groom.scalp.points)]
+    bodies = bodies or [PosedBody(groom.scalp, groom.scalp.points)]
     found: dict[str, Seen] = {f"{len(groom.locks):,} locks": (bodies, colored(hairs, hairs.curve["lock"]))}
     recipe = ringlet.read_recipe(path)
     if wider is not None and recipe.curl is not None and recipe.curl.width is not None:
@@ -82,27 +82,23 @@ def _adopted(folder: Path, wider: float | None, frame: int) -> dict[str, Seen]:
 def formats(folder: Path) -> None:
     """One groom in each format, as it is read back."""
     known = folder / "known.recipe.toml"
-    known.write_text(
-        f'ringlet = 2\nextends = "{ROOT}/examples/types/3B.recipe.toml"\n[locks]\ncount = 400\n'
-        "[hairs]\ndensity = false\nper_lock = 12\n"
-    )
+    known.write_text(f'ringlet = 2\nextends = "{ROOT}/examples/types/3B.recipe.toml"\n')
     ringlet.write_groom(ringlet.build_groom(known), folder / "groom.usdc")
-    ringlet.write_hairs(folder / "groom.usdc", folder / "hair.usdc")
+    ringlet.write_hairs(folder / "groom.usdc", folder / "hair.usdc", fraction=0.15, wider=True)
     tiles = {"hair.usdc": _with(folder / "hair.usdc")}
     for suffix in ("abc", "hair", "tfx", "obj"):
         path = folder / f"hair.{suffix}"
         done = ringlet.convert(folder / "hair.usdc", path, unit=None if suffix == "abc" else 1.0)
         print(path.name, f"{path.stat().st_size / 1e6:.1f} MB", *done["lost"], sep="\n  ")
         tiles[path.name] = _with(path)
-    _save("formats", tiles, (230, 270), (28.0, 6.0))
+    _save("formats", tiles, (230, 270), VIEW)
 
 
 def levels(_folder: Path) -> None:
     """All hairs against each level of detail, at the size on the screen for which it is meant."""
     groom = ringlet.build_groom(ROOT / "examples/child/ribbon.recipe.toml")
-    bodies = [PosedBody(groom.scalp, groom.scalp.points)]
-    every = ringlet.build_hairs(groom).curves
-    camera = frame_all([(bodies, every)], (1, 1), (28.0, 6.0))
+    every, bodies = ringlet.build_hairs(groom).curves, head()
+    camera = frame_all([(bodies[:1], every)], (1, 1), VIEW)
     tiles: list[tuple[str, str, NDArray[np.uint8]]] = []
     for number, level in enumerate(LEVELS[1:], 1):
         hairs = ringlet.build_hairs(groom, fraction=level.share, wider=True, point_share=level.points).curves
@@ -110,28 +106,35 @@ def levels(_folder: Path) -> None:
         size = round(across(camera, every) / pixel)
         samples = min(512, round(16 * (500 / size) ** 2))  # of larger pictures less, since the eye smooths them
         pictures = [draw_tile(bodies, one, camera, (size, size), None, samples) for one in (every, hairs)]
-        difference = np.abs(pictures[0].astype(int) - pictures[1]).astype(np.uint8)
-        print(f"LOD{number}: {size} pixels, mean difference {difference.mean():.1f} of 255")
-        names = (f"all {len(every):,} hairs", f"LOD{number}: {len(hairs):,} hairs", "difference")
-        for name, picture in zip(names, (*pictures, difference), strict=True):
-            tiles.append((name, f"{size} pixels" if name != "difference" else "", enlarged(picture)))
+        difference = np.abs(pictures[0].astype(int) - pictures[1])
+        print(f"LOD{number}: mean difference {difference.mean():.1f} of 255")
+        about = f"{1e3 * pixel:.1f} mm a pixel"
+        tiles += [
+            (f"all {len(every):,} hairs", about, enlarged(pictures[0])),
+            (f"LOD{number}: {len(hairs):,} hairs", about, enlarged(pictures[1])),
+            ("difference × 4, white is none", "", enlarged((255 - 4 * difference).clip(0, 255).astype(np.uint8))),
+        ]
     page = arrange_tiles(tiles, 3, (LARGE, LARGE), "", "")
     page.save(IMAGES / "levels.webp", quality=80, method=6)
 
 
 def enlarged(picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """The middle of a large picture, or a small one in whole pixels, shape (LARGE, LARGE, 3)."""
-    times = max(LARGE // len(picture), 1)
-    image = Image.fromarray(picture).resize((times * len(picture),) * 2, Image.Resampling.NEAREST)
-    canvas = Image.new("RGB", (LARGE, LARGE), "white")
-    canvas.paste(image, ((LARGE - image.width) // 2, (LARGE - image.height) // 2))
-    return np.asarray(canvas)
+    """The middle of a picture, of a small one in larger pixels, shape (LARGE, LARGE, 3)."""
+    times = -(-LARGE // len(picture))
+    whole = picture.repeat(times, axis=0).repeat(times, axis=1)
+    begin = (len(whole) - LARGE) // 2
+    return whole[begin : begin + LARGE, begin : begin + LARGE]
 
 
 def across(camera: Camera, hairs: Curves) -> float:
     """Width that the camera sees at the distance of the hairs [m]."""
     distance = np.linalg.norm(hairs.points.mean(axis=0) - camera.origin)
     return float(2.0 * camera.slopes[0] * distance)
+
+
+def head() -> list[PosedBody]:
+    """Skin of the example's head, then eyes and what else is on it."""
+    return [PosedBody(body.mesh, body.mesh.points) for body in read_stage(ROOT / "examples/child/head.usdc")[0]]
 
 
 def colored(hairs: Curves, groups: NDArray[np.integer]) -> Curves:
