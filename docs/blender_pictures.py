@@ -41,7 +41,7 @@ def meshes(stage: Usd.Stage) -> dict[str, dict]:
     """Meshes of the head, its skin first: ``points`` [m] with Z up, ``faces`` and ``color``."""
     unit, found = UsdGeom.GetStageMetersPerUnit(stage), {}
     for prim in stage.Traverse():
-        if prim.IsA(UsdGeom.Mesh):
+        if prim.GetTypeName() == "Mesh":
             mesh = UsdGeom.Mesh(prim)
             corners, ends = mesh.GetFaceVertexIndicesAttr().Get(), np.cumsum(mesh.GetFaceVertexCountsAttr().Get())
             placed = np.array(mesh.ComputeLocalToWorldTransform(Usd.TimeCode.Default()))

@@ -1,10 +1,13 @@
-"""Makes the pictures of hair in files: docs/adopt.md, convert.md, from_xgen.md and hair_files.md.
+"""Makes the pictures of hair in files: docs/adopt.md, convert.md, from_blender.md, into_unreal.md and hair_files.md.
 
-python docs/format_pictures.py [adopted | game MOHAWK.tfx | formats | levels]
+python docs/format_pictures.py [adopted | curled | archive | formats | levels]
+curled and archive need `make blender`.
 """
 
 from __future__ import annotations
 
+import os
+import subprocess
 import sys
 import tempfile
 from collections.abc import Sequence
@@ -12,11 +15,13 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from PIL import Image
 from ringlet.data.camera import Camera
 from ringlet.data.curves import Curves
 from ringlet.data.detail import HAIR_PIXELS, LEVELS
 from ringlet.data.pigment import DYE, DYE_AMOUNT, MELANIN
 from ringlet.io import open_scene, read_stage
+from ringlet.io.usd.curves import curve_widths
 from ringlet.picture import PosedBody
 from ringlet.picture.sheet import arrange_tiles, draw_tile, frame_all
 from ringlet.picture.strands import hair_widths
@@ -26,7 +31,7 @@ import ringlet
 ROOT = Path(__file__).parents[1]
 IMAGES = ROOT / "docs/images"
 VIEW = (28.0, 6.0)  # degrees
-SAMPLES = 24
+SAMPLES, FRAME = 24, 16
 LARGE = 300  # of a tile [pixels]
 Seen = tuple[Sequence[PosedBody], Curves]
 
@@ -43,48 +48,65 @@ def adopted(folder: Path) -> None:
     ringlet.write_hairs(folder / "groom.usdc", folder / "all.usdc")
     ringlet.convert(folder / "all.usdc", folder / "hair.hair", only="hairs", unit=1.0)
     ringlet.adopt(folder / "hair.hair", folder / "adopted.recipe.toml", head=recipe.scalp_file)
-    tiles = {"the given hairs": _with(folder / "hair.hair", folder / "all.usdc")}
-    tiles |= _adopted(folder, head(), wider=2.0, frame=16)
+    tiles = {"the given hairs": _with(folder / "hair.hair", folder / "all.usdc"), **_adopted(folder)}
     _save("adopted", tiles, (300, 330), VIEW)
 
 
-def game(folder: Path, file: Path) -> None:
-    """Hair of a game: as given, straightened by a setting, and in motion."""
-    ringlet.adopt(file, folder / "adopted.recipe.toml")
-    tiles = {"the given hairs": _with(file)}
-    tiles |= _adopted(folder, [], wider=None, frame=16)
-    _save("adopted_game", tiles, (300, 330), (60.0, 10.0))
+def curled(folder: Path) -> None:
+    """Curves that Blender's own nodes curl, exported as USD: as given, and as they are adopted."""
+    head_file, curves = ROOT / "examples/child/head.usdc", folder / "curves.usdc"
+    _in_blender("blender_curves.py", head_file, curves)
+    ringlet.adopt(curves, folder / "adopted.recipe.toml", head=head_file, mesh="/child/skin")
+    tiles = {"exported by Blender": _with(curves, head_file), **_adopted(folder)}
+    _save("from_blender", tiles, (300, 330), VIEW)
 
 
-def _adopted(folder: Path, bodies: list[PosedBody], wider: float | None, frame: int) -> dict[str, Seen]:
-    """Hairs of an adopted recipe: in a colour for each lock, with wider curls, and at a frame of the nod."""
-    path = folder / "adopted.recipe.toml"
-    groom = ringlet.build_groom(path)
+def archive(folder: Path) -> None:
+    """Guides and hairs of an Alembic archive, as Blender opens it."""
+    _thinned(folder)
+    ringlet.convert(folder / "hair.usdc", folder / "hair.abc")
+    _in_blender("blender_archive.py", folder / "hair.abc", folder)
+    names = ("guides", "hairs")
+    pictures = [np.asarray(Image.open(folder / f"{name}.jpg").convert("RGB")) for name in names]
+    tiles = [(f"{name} of hair.abc", "", picture) for name, picture in zip(names, pictures, strict=True)]
+    arrange_tiles(tiles, 2, pictures[0].shape[1::-1], "", "").save(IMAGES / "archive.jpg", quality=84)
+
+
+def _in_blender(script: str, *words: Path) -> None:
+    """Runs a script of this folder in Blender's Python."""
+    clean = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+    subprocess.run([ROOT / ".venv-blender/bin/python", ROOT / "docs" / script, *words], check=True, env=clean)
+
+
+def _adopted(folder: Path) -> dict[str, Seen]:
+    """Hairs of an adopted recipe: in a color for each lock, with curls twice as wide, and at a frame of the nod."""
+    path, bodies = folder / "adopted.recipe.toml", head()
+    groom, recipe = ringlet.build_groom(path), ringlet.read_recipe(path)
     hairs = ringlet.build_hairs(groom).curves
-    bodies = bodies or [PosedBody(groom.scalp, groom.scalp.points)]
-    found: dict[str, Seen] = {f"{len(groom.locks):,} locks": (bodies, colored(hairs, hairs.curve["lock"]))}
-    recipe = ringlet.read_recipe(path)
-    if wider is not None and recipe.curl is not None and recipe.curl.width is not None:
-        settings = {name: getattr(recipe.curl, name) for name in ("width", "pitch")}
-        scaled = {name: one.model_copy(update={"value": wider * one.value}) for name, one in settings.items()}
-        changed = recipe.model_copy(update={"curl": recipe.curl.model_copy(update=scaled)})
-        found["width and pitch of the curl × 2"] = (bodies, ringlet.build_hairs(ringlet.build_groom(changed)).curves)
+    curl = recipe.curl
+    assert curl is not None and curl.width is not None and curl.pitch is not None
+    settings = {"width": curl.width, "pitch": curl.pitch}
+    twice = {name: one.model_copy(update={"value": 2.0 * one.value}) for name, one in settings.items()}
+    wider = ringlet.build_groom(recipe.model_copy(update={"curl": curl.model_copy(update=twice)}))
     shot = folder / "nod.shot.toml"
     text = (ROOT / "examples/child/nod.shot.toml").read_text()
-    shot.write_text(text.replace("curls.recipe.toml", path.name).replace("[1, 48]", f"[1, {frame}]"))
+    shot.write_text(text.replace("curls.recipe.toml", path.name).replace("[1, 48]", f"[1, {FRAME}]"))
     ringlet.write_groom(groom, folder / "adopted.usdc")
-    ringlet.write_simulation(ringlet.read_shot(shot), groom, folder / "adopted.usdc", folder / "cache.usdc")
-    ringlet.write_hairs(folder / "cache.usdc", folder / "moving.usdc", frames=(frame, frame))
-    found[f"simulated, frame {frame}"] = _with(folder / "moving.usdc", frame=frame)
-    return found
+    cache = folder / "cache.usdc"
+    ringlet.write_simulation(
+        ringlet.read_shot(shot), groom, folder / "adopted.usdc", cache, checkpoints=folder / "cache.part"
+    )
+    ringlet.write_hairs(cache, folder / "moving.usdc", frames=(FRAME, FRAME))
+    return {
+        f"{len(groom.locks):,} locks": (bodies, colored(hairs, hairs.curve["lock"])),
+        "curls twice as wide": (bodies, ringlet.build_hairs(wider).curves),
+        f"simulated, frame {FRAME}": _with(folder / "moving.usdc", frame=FRAME),
+    }
 
 
 def formats(folder: Path) -> None:
     """One groom in each format, as it is read back."""
-    known = folder / "known.recipe.toml"
-    known.write_text(f'ringlet = 2\nextends = "{ROOT}/examples/types/3B.recipe.toml"\n')
-    ringlet.write_groom(ringlet.build_groom(known), folder / "groom.usdc")
-    ringlet.write_hairs(folder / "groom.usdc", folder / "hair.usdc", fraction=0.15, wider=True)
+    _thinned(folder)
     tiles = {"hair.usdc": _with(folder / "hair.usdc")}
     for suffix in ("abc", "hair", "tfx", "obj"):
         path = folder / f"hair.{suffix}"
@@ -92,6 +114,12 @@ def formats(folder: Path) -> None:
         print(path.name, f"{path.stat().st_size / 1e6:.1f} MB", *done["lost"], sep="\n  ")
         tiles[path.name] = _with(path)
     _save("formats", tiles, (230, 270), VIEW)
+
+
+def _thinned(folder: Path) -> None:
+    """Writes ``hair.usdc``: a groom of type 3B with few, wide hairs."""
+    ringlet.write_groom(ringlet.build_groom(ROOT / "examples/types/3B.recipe.toml"), folder / "groom.usdc")
+    ringlet.write_hairs(folder / "groom.usdc", folder / "hair.usdc", fraction=0.15, wider=True)
 
 
 def levels(_folder: Path) -> None:
@@ -112,7 +140,7 @@ def levels(_folder: Path) -> None:
         tiles += [
             (f"all {len(every):,} hairs", about, enlarged(pictures[0])),
             (f"LOD{number}: {len(hairs):,} hairs", about, enlarged(pictures[1])),
-            ("difference × 4, white is none", "", enlarged((255 - 4 * difference).clip(0, 255).astype(np.uint8))),
+            ("four times the difference", "", enlarged((255 - 4 * difference).clip(0, 255).astype(np.uint8))),
         ]
     page = arrange_tiles(tiles, 3, (LARGE, LARGE), "", "")
     page.save(IMAGES / "levels.webp", quality=80, method=6)
@@ -147,14 +175,15 @@ def colored(hairs: Curves, groups: NDArray[np.integer]) -> Curves:
     return made
 
 
-def _with(path: Path, head: Path | None = None, frame: float | None = None) -> Seen:
+def _with(path: Path, surfaces: Path | None = None, frame: float | None = None) -> Seen:
     """Hairs of a file, with its surfaces or those of another."""
     with open_scene(path) as scene:
         posed = scene.posed(frame)
         hairs, bodies = posed.sets[0].curves, posed.bodies
         at = [(mesh, mesh.points if clip is None or frame is None else clip.at(frame)) for mesh, clip in bodies]
-    if head is not None:
-        return _with(head)[0], hairs
+    hairs.point["width"] = curve_widths(hairs)
+    if surfaces is not None:
+        return _with(surfaces)[0], hairs
     return [PosedBody(mesh, points) for mesh, points in at], hairs
 
 
@@ -167,12 +196,11 @@ def _save(name: str, tiles: dict[str, Seen], size: tuple[int, int], view: tuple[
 
 
 def main() -> None:
-    """Makes the pictures that are asked for by name, or all that need no file."""
-    made = {"adopted": adopted, "game": game, "formats": formats, "levels": levels}
-    name, *files = sys.argv[1:] or ["all"]
-    for one in ("adopted", "formats", "levels") if name == "all" else (name,):
+    """Makes the picture that is asked for by name, or all."""
+    made = {"adopted": adopted, "curled": curled, "archive": archive, "formats": formats, "levels": levels}
+    for name in sys.argv[1:] or made:
         with tempfile.TemporaryDirectory() as folder:
-            made[one](Path(folder), *map(Path, files))
+            made[name](Path(folder))
 
 
 if __name__ == "__main__":
