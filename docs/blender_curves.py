@@ -12,7 +12,7 @@ import bpy
 import numpy as np
 from mathutils import Vector
 
-COUNT, POINTS, LENGTH = 1800, 60, 0.11  # curves, points of each, and their length [m]
+COUNT, POINTS, LENGTH = 1200, 60, 0.11  # curves, points of each, and their length [m]
 SETTINGS = {"Radius": 0.005, "Frequency": 12.0, "Curl Start": 0.1, "Subdivision": 1, "Guide Distance": 0.008}
 NODES = "datafiles/assets/nodes/procedural_hair_node_assets.blend"
 
@@ -35,7 +35,7 @@ def grown(skin: bpy.types.Object) -> bpy.types.Object:
     data.add_curves([POINTS] * COUNT)
     data.attributes["position"].data.foreach_set("vector", np.array(points, np.float32).ravel())
     radius = data.attributes.new("radius", "FLOAT", "POINT")
-    radius.data.foreach_set("value", np.full(COUNT * POINTS, 1.5e-4, np.float32))
+    radius.data.foreach_set("value", np.full(COUNT * POINTS, 2.5e-4, np.float32))
     thing = bpy.data.objects.new("curves", data)
     bpy.context.scene.collection.objects.link(thing)
     return thing

@@ -31,7 +31,7 @@ import ringlet
 ROOT = Path(__file__).parents[1]
 IMAGES = ROOT / "docs/images"
 VIEW = (28.0, 6.0)  # degrees
-SAMPLES, FRAME = 24, 16
+SAMPLES, FRAME = 16, 10
 LARGE = 300  # of a tile [pixels]
 Seen = tuple[Sequence[PosedBody], Curves]
 
@@ -40,8 +40,8 @@ def adopted(folder: Path) -> None:
     """Hair of a file without names of clumps: as given, its locks, with wider curls, and in motion."""
     known = folder / "known.recipe.toml"
     known.write_text(
-        f'ringlet = 2\nextends = "{ROOT}/examples/types/3C.recipe.toml"\n[locks]\ncount = 600\n'
-        '[hairs]\ndensity = false\nper_lock = 16\nwidth = "0.2 mm"\n'
+        f'ringlet = 2\nextends = "{ROOT}/examples/types/3C.recipe.toml"\n[locks]\ncount = 240\n'
+        '[hairs]\ndensity = false\nper_lock = 24\nwidth = "0.3 mm"\n'
     )
     recipe = ringlet.read_recipe(known)
     ringlet.write_groom(ringlet.build_groom(recipe), folder / "groom.usdc")
@@ -90,7 +90,9 @@ def _adopted(folder: Path) -> dict[str, Seen]:
     wider = ringlet.build_groom(recipe.model_copy(update={"curl": curl.model_copy(update=twice)}))
     shot = folder / "nod.shot.toml"
     text = (ROOT / "examples/child/nod.shot.toml").read_text()
-    shot.write_text(text.replace("curls.recipe.toml", path.name).replace("[1, 48]", f"[1, {FRAME}]"))
+    for was, now in (("curls", "adopted"), ("[1, 48]", f"[1, {FRAME}]"), ("preroll = 12", "preroll = 0")):
+        text = text.replace(was, now)
+    shot.write_text(text)
     ringlet.write_groom(groom, folder / "adopted.usdc")
     cache = folder / "cache.usdc"
     ringlet.write_simulation(
