@@ -12,7 +12,18 @@ import bpy
 from blender_render import light_and_camera, render
 
 CENTIMETRES = 0.01
-SKIN, GUIDES, HAIRS = (0.37, 0.14, 0.09), (0.9, 0.25, 0.05), (0.03, 0.012, 0.006)
+SKIN, DARK = (0.37, 0.14, 0.09), (0.01, 0.006, 0.005)
+COLORS = {  # by the beginning of the name; archives hold none
+    "guides": (0.9, 0.25, 0.05),
+    "hairs": (0.03, 0.012, 0.006),
+    "shirt": (0.55, 0.31, 0.085),
+    "eyeball": (0.8, 0.8, 0.8),
+    "iris": (0.1, 0.04, 0.016),
+    "pupil": DARK,
+    "brow": DARK,
+    "lash": DARK,
+}
+GUIDE_WIDTH = 1e-3  # m; guides have the width of a hair
 
 
 def paint(thing: bpy.types.Object, color: tuple[float, float, float]) -> None:
@@ -34,9 +45,12 @@ def main(archive: str, folder: str) -> None:
     things = {thing.name: thing for thing in bpy.data.objects}
     for thing in things.values():
         if thing.type in ("MESH", "CURVES"):
-            paint(thing, {"guides": GUIDES, "hairs": HAIRS}.get(thing.name, SKIN))
+            paint(thing, next((COLORS[one] for one in COLORS if thing.name.startswith(one)), SKIN))
             print(thing.name, len(getattr(thing.data, "curves", ())), file=sys.stderr)
+    radii = things["guides"].data.attributes["radius"].data
+    radii.foreach_set("value", [0.5 * GUIDE_WIDTH / CENTIMETRES] * len(radii))
     light_and_camera(things["skin"])
+    bpy.context.scene.camera.data.lens = 105
     for name, other in (("guides", "hairs"), ("hairs", "guides")):
         things[name].hide_render, things[other].hide_render = False, True
         render(str(Path(folder) / f"{name}.jpg"))

@@ -48,7 +48,7 @@ def adopted(folder: Path) -> None:
     ringlet.write_hairs(folder / "groom.usdc", folder / "all.usdc")
     ringlet.convert(folder / "all.usdc", folder / "hair.hair", only="hairs", unit=1.0)
     ringlet.adopt(folder / "hair.hair", folder / "adopted.recipe.toml", head=recipe.scalp_file)
-    tiles = {"the given hairs": _with(folder / "hair.hair", folder / "all.usdc"), **_adopted(folder)}
+    tiles = {"the given hairs": (head(), _with(folder / "hair.hair")[1]), **_adopted(folder)}
     _save("adopted", tiles, (300, 330), VIEW)
 
 
@@ -57,7 +57,7 @@ def curled(folder: Path) -> None:
     head_file, curves = ROOT / "examples/child/head.usdc", folder / "curves.usdc"
     _in_blender("blender_curves.py", head_file, curves)
     ringlet.adopt(curves, folder / "adopted.recipe.toml", head=head_file, mesh="/child/skin")
-    tiles = {"exported by Blender": _with(curves, head_file), **_adopted(folder)}
+    tiles = {"exported by Blender": (head(), _with(curves)[1]), **_adopted(folder)}
     _save("from_blender", tiles, (300, 330), VIEW)
 
 
@@ -177,15 +177,13 @@ def colored(hairs: Curves, groups: NDArray[np.integer]) -> Curves:
     return made
 
 
-def _with(path: Path, surfaces: Path | None = None, frame: float | None = None) -> Seen:
-    """Hairs of a file, with its surfaces or those of another."""
+def _with(path: Path, frame: float | None = None) -> Seen:
+    """Hairs of a file, with its surfaces."""
     with open_scene(path) as scene:
         posed = scene.posed(frame)
         hairs, bodies = posed.sets[0].curves, posed.bodies
         at = [(mesh, mesh.points if clip is None or frame is None else clip.at(frame)) for mesh, clip in bodies]
     hairs.point["width"] = curve_widths(hairs)
-    if surfaces is not None:
-        return _with(surfaces)[0], hairs
     return [PosedBody(mesh, points) for mesh, points in at], hairs
 
 
