@@ -35,7 +35,7 @@ def grown(skin: bpy.types.Object) -> bpy.types.Object:
     data.add_curves([POINTS] * COUNT)
     data.attributes["position"].data.foreach_set("vector", np.array(points, np.float32).ravel())
     radius = data.attributes.new("radius", "FLOAT", "POINT")
-    radius.data.foreach_set("value", np.full(COUNT * POINTS, 2.5e-4, np.float32))
+    radius.data.foreach_set("value", np.full(COUNT * POINTS, 4e-4, np.float32))
     thing = bpy.data.objects.new("curves", data)
     bpy.context.scene.collection.objects.link(thing)
     return thing

@@ -47,7 +47,7 @@ def adopted(folder: Path) -> None:
     ringlet.write_groom(ringlet.build_groom(recipe), folder / "groom.usdc")
     ringlet.write_hairs(folder / "groom.usdc", folder / "all.usdc")
     ringlet.convert(folder / "all.usdc", folder / "hair.hair", only="hairs", unit=1.0)
-    ringlet.adopt(folder / "hair.hair", folder / "adopted.recipe.toml", head=recipe.scalp_file)
+    ringlet.adopt(folder / "hair.hair", folder / "adopted.recipe.toml", head=recipe.scalp_file, locks=240)
     tiles = {"the given hairs": (head(), _with(folder / "hair.hair")[1]), **_adopted(folder)}
     _save("adopted", tiles, (300, 330), VIEW)
 
@@ -84,10 +84,9 @@ def _adopted(folder: Path) -> dict[str, Seen]:
     groom, recipe = ringlet.build_groom(path), ringlet.read_recipe(path)
     hairs = ringlet.build_hairs(groom).curves
     curl = recipe.curl
-    assert curl is not None and curl.width is not None and curl.pitch is not None
-    settings = {"width": curl.width, "pitch": curl.pitch}
-    twice = {name: one.model_copy(update={"value": 2.0 * one.value}) for name, one in settings.items()}
-    wider = ringlet.build_groom(recipe.model_copy(update={"curl": curl.model_copy(update=twice)}))
+    assert curl is not None and curl.width is not None
+    twice = curl.width.model_copy(update={"value": 2.0 * curl.width.value})
+    wider = ringlet.build_groom(recipe.model_copy(update={"curl": curl.model_copy(update={"width": twice})}))
     shot = folder / "nod.shot.toml"
     text = (ROOT / "examples/child/nod.shot.toml").read_text()
     for was, now in (("curls", "adopted"), ("[1, 48]", f"[1, {FRAME}]"), ("preroll = 12", "preroll = 0")):
@@ -171,8 +170,8 @@ def colored(hairs: Curves, groups: NDArray[np.integer]) -> Curves:
     """Hairs in a colour for each group."""
     made = hairs.take(np.arange(len(hairs)))
     hues = np.random.default_rng(2).random((int(groups.max()) + 1, 3))
-    made.curve[MELANIN] = np.full(len(made), 0.1, np.float32)
-    made.curve[DYE] = (0.05 + 0.75 * hues[groups]).astype(np.float32)
+    made.curve[MELANIN] = np.full(len(made), 0.5, np.float32)
+    made.curve[DYE] = (0.01 + 0.3 * hues[groups] ** 3).astype(np.float32)
     made.curve[DYE_AMOUNT] = np.ones(len(made), np.float32)
     return made
 
