@@ -8,7 +8,7 @@ python - <<'PROGRAM'
 import pathlib
 import ringlet
 from ringlet import _core, viewer
-from ringlet.share import share
+from ringlet.data.share import share
 
 package = pathlib.Path(ringlet.__file__).parent
 assert "site-packages" in package.parts, f"{package} is not installed, but a working tree"
@@ -17,7 +17,7 @@ page = pathlib.Path(viewer.__file__).parent / "static/index.html"
 assert page.exists(), "the review page is not in the wheel"
 print(f"ringlet {ringlet.__version__}, {_core.simd()}, {_core.thread_count()} threads, {package}")
 PROGRAM
-example=$(python -c 'from ringlet.share import share; print(share("examples/child"))')
+example=$(python -c 'from ringlet.data.share import share; print(share("examples/child"))')
 ringlet doctor
 ringlet groom "$example/light.recipe.toml" -o groom.usdc
 ringlet sim "$example/nod.shot.toml" --groom groom.usdc --frames 1:2 -o cache.usdc

@@ -9,6 +9,7 @@ import importlib
 import json
 import os
 import signal
+import subprocess
 import sys
 import time
 from pathlib import Path
@@ -118,7 +119,15 @@ def slider(_folder: Path) -> dict:
         "length": own.recipe_guides.length__value,
         "before": size(head),
         "material": own.hair_curves.data.materials[0].node_tree.nodes["Ringlet hair"].parametrization,
+        "viewport": list(own.hair_curves.data.materials[0].diffuse_color),
+        "subdivisions": bpy.context.scene.render.hair_subdiv,
     }
+    own.recipe_hairs.per_lock__value = 8
+    of("timer").tick()  # asks for the groom; the fraction changes before it is there
+    assert of("grooming").state_of(head).busy
+    own.fraction = 1.0
+    wait(settled)
+    found["all hairs"] = of("grooming").state_of(head).counts["hairs"]
     bpy.ops.ed.undo_push(message="groomed")
     own.recipe_guides.length__value = 0.1
     bpy.ops.ed.undo_push(message="length")
@@ -214,6 +223,95 @@ def shot(folder: Path) -> dict:
     return found
 
 
+def heights(thing: bpy.types.Object) -> np.ndarray:
+    """Heights of the vertices of a mesh above the middle of the head, in the current frame [m]."""
+    seen = thing.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    return np.array([(seen.matrix_world @ vertex.co).z for vertex in seen.data.vertices])
+
+
+def cloth(folder: Path) -> dict:
+    """A sheet that is held at one edge and falls at the other: played, saved and opened again, and cleared."""
+    head = begin()
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=6, y_subdivisions=6, size=0.2, location=(0, 0, 0.25))
+    sheet = bpy.context.active_object
+    sheet.name, sheet.parent = "Silk sheet", head
+    held = [v.index for v in sheet.data.vertices if v.co.x < -0.09]
+    sheet.vertex_groups.new(name="pin").add(held, 1.0, "REPLACE")
+    inner = [v.index for v in sheet.data.vertices if abs(v.co.y) < 0.09]  # subdivision draws corners in
+    held, free = ([v for v in inner if sign * sheet.data.vertices[v].co.x > 0.09] for sign in (-1, 1))
+    sheet.modifiers.new("finer", "SUBSURF")
+    bend = sheet.modifiers.new("raised", "DISPLACE")
+    bend.strength, bend.mid_level = 0.01, 0.0
+    worn = bpy.data.collections.new("worn")
+    bpy.context.scene.collection.children.link(worn)
+    worn.objects.link(sheet)
+    head.ringlet.cloth = worn
+    scene = bpy.context.scene
+    scene.frame_start, scene.frame_end = 1, 4
+    bpy.context.view_layer.objects.active = head
+    path = str(folder / "scene.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    of("shots").begin_text(head)
+    head.ringlet.shot.ringlet_changes = json.dumps([{"set": ["preroll"], "value": 0}])
+    found: dict = {"runs": []}
+    for _ in range(2):  # the second reads a sheet that its moving copy hides
+        bpy.ops.ringlet.simulate()
+        wait(lambda: of("shots").shots.run is None)
+        copies = [pair.moving.name for pair in head.ringlet.cloth_motion]
+        found |= {"message": of("shots").shots.message, "copies": copies}
+        found["runs"].append([])
+        for frame in (1, 4):
+            scene.frame_set(frame)
+            seen = heights(head.ringlet.cloth_motion[0].moving)
+            found["runs"][-1].append([seen[held].tolist(), seen[free].tolist()])
+    found["hidden"] = [sheet.hide_viewport, sheet.hide_render]
+    found["vertices"] = [len(seen), len(sheet.data.vertices)]
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    head, scene = bpy.data.objects["Kim"], bpy.context.scene
+    scene.frame_set(4)
+    found["opened"] = heights(head.ringlet.cloth_motion[0].moving)[free].tolist()
+    bpy.context.view_layer.objects.active = head
+    bpy.ops.ringlet.clear_motion()
+    sheet = bpy.data.objects["Silk sheet"]
+    found["cleared"] = [len(bpy.data.cache_files), len(head.ringlet.cloth_motion)]
+    found["shown"] = [not sheet.hide_viewport, not sheet.hide_render]
+    found["meshes"] = sorted(thing.name for thing in bpy.data.objects if thing.type == "MESH")
+    return found
+
+
+def images(folder: Path) -> dict:
+    """An image that is painted in Blender as the density of locks; painted on, and taken without pixels."""
+    head = begin()
+    bpy.ops.wm.save_as_mainfile(filepath=str(folder / "scene.blend"))
+    own = head.ringlet
+    painted = bpy.data.images.new("Thin crown", 64, 32)
+    bpy.ops.ringlet.add_image()
+    own.images[0].image = painted
+    own.recipe_locks.count = 400
+    own.recipe_locks.density = "Thin_crown"
+    found: dict = {}
+    for name, left, right in (("left", 1.0, 0.0), ("right", 0.0, 1.0), ("both", 1.0, 0.25)):
+        pixels = np.ones((32, 64, 4), np.float32)
+        pixels[:, :32, :3], pixels[:, 32:, :3] = left, right
+        painted.pixels.foreach_set(pixels.ravel())
+        painted.update()
+        time.sleep(0.2)  # longer than the extension leaves the pixels of a small image alone
+        wait(settled)
+        u = np.empty(2 * len(own.lock_curves.data.curves), np.float32)
+        own.lock_curves.data.attributes["surface_uv_coordinate"].data.foreach_get("vector", u)
+        found[name] = [int((u[::2] < 0.5).sum()), int((u[::2] >= 0.5).sum())]
+    found |= {"message": of("grooming").state_of(head).message, "dirty": painted.is_dirty, "file": painted.filepath}
+    own.images[0].image = bpy.data.images.new("Nowhere", 8, 8)
+    own.images[0].image.source, own.images[0].image.filepath = "FILE", "/nowhere.png"
+    wait(lambda: bool(of("grooming").state_of(head).message))
+    found["refused"] = of("grooming").state_of(head).message
+    own.images[0].image = painted
+    wait(lambda: not of("grooming").state_of(head).message)
+    found["mended"] = settled()
+    return found
+
+
 def killed(_folder: Path) -> dict:
     """A process that is killed: a line in the panel, and another process with the next change."""
     head = begin()
@@ -229,6 +327,32 @@ def killed(_folder: Path) -> dict:
     head.ringlet.recipe_guides.length__value = 0.08
     wait(lambda: bool(state.message))
     found["missing"] = state.message
+    return found
+
+
+def install(folder: Path) -> dict:
+    """The button Install Ringlet, offline, with a wheel: one that is not there, one that needs another, and both."""
+    preferences = bpy.context.preferences.addons[MODULE].preferences
+    installation, place = of("installation").installation, of("installation").environment()
+    os.environ["PATH"] = "/usr/bin:/bin"  # without a command of Ringlet
+    preferences.python = (folder / "python").read_text()
+    preferences.wheel = str(folder / "nowhere.whl")
+    found = {"no file": refused(bpy.ops.ringlet.install)}
+    preferences.wheel = ""
+    found["offline"] = refused(bpy.ops.ringlet.install)
+    preferences.wheel = str(next(folder.glob("ringlet-*.whl")))
+    for name in ("alone", "together"):
+        bpy.ops.ringlet.install()
+        wait(lambda: not installation.running)
+        found[name] = [installation.state, place.exists(), of("installation").command()]
+        for needed in (folder / "needed").glob("*.whl"):
+            needed.rename(folder / needed.name)
+    head = begin()
+    found |= {"message": of("grooming").state_of(head).message}
+    found["session"] = [of("session").session.version, of("session").session.error]
+    found["locks"] = of("grooming").state_of(head).counts["locks"]
+    where = [*found["together"][2][:-1], "import ringlet; print(ringlet.__file__)"]
+    found["where"] = [subprocess.check_output(where, text=True, cwd=folder), str(place)]
     return found
 
 
@@ -285,8 +409,8 @@ def main(extension: str, action: str, folder: str) -> dict:
     """Installs the extension and performs an action."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bpy.ops.extensions.package_install_files(filepath=extension, repo="user_default", enable_on_install=True)
-    found = {"slider": slider, "stored": stored, "shot": shot, "killed": killed, "guides": guides}[action](Path(folder))
-    return found
+    actions = (slider, stored, shot, cloth, images, killed, install, guides)
+    return {act.__name__: act for act in actions}[action](Path(folder))
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ from ringlet.data.hair_scene import CurveSet, HairScene
 from ringlet.data.painted import per_lock
 from ringlet.data.random import Random, soft_threshold
 from ringlet.groom.operators.operator import grid, resampled
-from ringlet.io import write_scene
+from ringlet.io import read_hairs, write_scene
 
 from ringlet import (
     Curves,
@@ -127,6 +127,23 @@ def test_settings_of_the_recipe_change_adopted_hair(known, tmp_path):
         lines = grid(groom.locks)[hairs.curve["lock"]]
         off.append(distances(grid(hairs)[:, 20:].astype(float), lines).mean())
     assert off[0] > 5e-4 and off[1] < 5e-5
+
+
+def test_the_pitch_of_hair_that_is_straight_in_part_can_be_doubled(known, tmp_path):
+    folder, _, _ = known
+    hairs = read_hairs(folder / "hair.usdc")
+    lines, straight = grid(hairs).astype(float), hairs.curve["lock"] < LOCKS // 5
+    along = np.linspace(0.0, 1.0, lines.shape[1])[:, None]
+    lines[straight] = lines[straight, :1] + along * (lines[straight, -1:] - lines[straight, :1])
+    mixed = hairs.with_points(lines.reshape(-1, 3).astype(np.float32))
+    write_scene(HairScene([CurveSet("hairs", mixed, False)]), tmp_path / "mixed.hair", StageSpace())
+    recipe = tmp_path / "adopted.recipe.toml"
+    done = adopt(tmp_path / "mixed.hair", recipe, head=folder / "head.usda")
+    assert done["error"]["95"] < 5e-4
+    pitch = read_recipe(recipe).curl.pitch.value
+    edit(recipe, f'value = "{1e3 * pitch:.6g} mm"', f'value = "{2e3 * pitch:.6g} mm"')
+    coils = fit_coils(grid(resampled(build_groom(recipe).locks, 120)))
+    assert not coils.coiled[: LOCKS // 5].any() and coils.coiled[LOCKS // 5 :].mean() > 0.9
 
 
 def test_clumps_are_found_by_the_shapes_of_hairs(known):

@@ -95,3 +95,9 @@ def test_checking_an_output_path_leaves_no_file(tmp_path):
     with ringlet.Run("test") as run, pytest.raises(ZeroDivisionError), run.stage("one", tmp_path / "a/b/c.usdc"):
         raise ZeroDivisionError
     assert list(tmp_path.iterdir()) == []
+
+
+def test_the_scripts_find_the_modules_that_they_import():
+    for script in (ROOT / "tools").glob("*.sh"):
+        for line in set(re.findall(r"from ringlet[\w.]* import [\w, ]+", script.read_text())):
+            exec(line, {})

@@ -10,6 +10,7 @@ import blender
 import numpy as np
 import pytest
 from ringlet.data.pigment import absorption
+from wheels import NEEDED, wheel_of_needed, wheel_of_ringlet
 
 import ringlet
 
@@ -103,6 +104,9 @@ def test_a_groom_from_scratch_follows_a_slider_undo_and_redo(act):
     assert found["message"] == "" and found["counts"]["locks"] == 24
     assert found["curves"] == [14, 24, found["counts"]["hairs"]]
     assert found["surface"] == "Kim" and found["material"] == "MELANIN"
+    red, green, blue, opaque = found["viewport"]
+    assert 0.3 > red > green > blue > 0.0 and opaque == 1.0 and found["subdivisions"] == 3
+    assert found["all hairs"] == 24 * 8  # the fraction of the panel counts, though it was set during a groom
     assert found["roots"] < 0.005 and found["lowest root"] > -0.01  # on the facets of the vertex group
     assert found["length"] == pytest.approx(0.05) and found["after"] > found["before"] + 0.03
     assert "length = 10" in found["text"] and "# a cap of curls" in found["text"] and found["changes"] == ""
@@ -135,10 +139,54 @@ def test_a_shot_is_canceled_resumed_played_and_baked(act):
 
 
 @needs_blender
+def test_cloth_of_a_collection_is_simulated_and_plays_in_the_blend(act):
+    found = act("cloth")
+    assert found["message"] == "" and found["copies"] == ["Silk sheet simulated"]
+    for start, end in found["runs"]:
+        np.testing.assert_allclose(start[0], 0.26, atol=1e-3)  # raised by its modifier
+        np.testing.assert_allclose(end[0], start[0], atol=2e-3)
+        fall = np.subtract(start[1], end[1])
+        assert fall.min() > 0.02 and fall.max() < 1.5 * 0.5 * 9.81 * (3 / 24) ** 2  # of a free edge: a hinged plate
+    np.testing.assert_allclose(found["runs"][1], found["runs"][0], atol=1e-5)
+    np.testing.assert_allclose(found["opened"], found["runs"][1][1][1], atol=1e-6)
+    assert found["hidden"] == [True, True] and found["vertices"][0] > found["vertices"][1]
+    assert found["cleared"] == [0, 0] and found["shown"] == [True, True]
+    assert found["meshes"] == ["Kim", "Silk sheet"]
+
+
+@needs_blender
+def test_locks_grow_where_an_image_is_painted(act):
+    found = act("images")
+    assert found["left"][0] >= 390 and found["right"][1] >= 390  # pixels on both sides of the edge are mixed
+    thick, thin = found["both"]
+    assert thick + thin == 400 and 2.5 < thick / thin < 6
+    assert found["message"] == "" and found["dirty"] and found["file"] == ""
+    assert "Nowhere: has no pixels" in found["refused"] and found["mended"]
+
+
+@needs_blender
 def test_a_killed_process_is_started_again_and_a_missing_one_is_a_line(act):
     found = act("killed")
     assert found["another"] and found["message"] == "" and found["size"] > 0.17
     assert "not installed" in found["missing"]
+
+
+@needs_blender
+def test_ringlet_is_installed_from_a_folder_of_wheels(act, tmp_path):
+    folder = tmp_path / "work"
+    (folder / "needed").mkdir()
+    wheel_of_ringlet(folder)
+    wheel_of_needed(folder / "needed")
+    (folder / "python").write_text(sys.executable)
+    found = act("install")
+    assert "nowhere.whl: there is no such file" in found["no file"] and "Online access is off" in found["offline"]
+    assert found["alone"][0].startswith("Installing Ringlet failed") and NEEDED in found["alone"][0]
+    assert found["alone"][1:] == [False, None]
+    assert found["together"][:2] == ["done", True]
+    assert found["message"] == "" and found["locks"] == 24
+    assert found["session"] == [ringlet.__version__, ""]
+    module, place = found["where"]
+    assert Path(module).is_relative_to(place)
 
 
 @needs_blender

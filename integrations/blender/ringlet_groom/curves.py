@@ -11,6 +11,7 @@ from mathutils import Matrix
 from .refused import Refused
 
 KINDS = {1: ("FLOAT", "value"), 2: ("FLOAT2", "vector"), 3: ("FLOAT_VECTOR", "vector")}
+MOST_SUBDIVISIONS = 3  # of curves in the viewport
 ID_HALVES = ("id_high", "id_low")  # Blender has no attributes of 64-bit integers
 
 
@@ -31,6 +32,12 @@ def set_curves(data: bpy.types.Curves, arrays: Mapping[str, np.ndarray]) -> None
             rows = "CURVE" if len(values) == len(counts) else "POINT"
             set_attribute(data, "surface_uv_coordinate" if name == "uv" else name, values, rows)
     data.update_tag()
+
+
+def draw_curls(scene: bpy.types.Scene) -> None:
+    """Lets the viewport draw so many points of each curve that curls are seen: by default it draws few, evenly spaced,
+    and curls look straight."""
+    scene.render.hair_subdiv = MOST_SUBDIVISIONS
 
 
 def set_attribute(data: bpy.types.Curves, name: str, values: np.ndarray, domain: str) -> None:

@@ -16,7 +16,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from . import curves, material, meshes
+from . import curves, images, material, meshes
 from .link import Message
 from .properties import Document, keep_settings, scale
 from .refused import Refused
@@ -63,6 +63,7 @@ def forget(name: str | None = None) -> None:
     if name is None:
         states.clear()
         _arrays.clear()
+        images.forget()
     else:
         _arrays.pop(name, None)
 
@@ -106,31 +107,33 @@ def recipe_message(head: bpy.types.Object) -> dict:
     overlay = []
     if own.guides is not None:
         overlay.append({"set": ["guides"], "value": {"file": GUIDES}})
+    folder = folder_of(head)
     for one in own.images:
         if one.image is not None:
-            overlay.append({"set": ["maps", meshes.identifier(one.image.name)], "value": _image_file(head, one.image)})
+            file = images.file_of(one.image, folder)
+            overlay.append({"set": ["maps", meshes.identifier(one.image.name)], "value": file})
     changes = json.loads(document.changes or "[]")
     return {"name": own.recipe.name, "text": document.text, "changes": changes, "overlay": overlay}
 
 
-def _image_file(head: bpy.types.Object, image: bpy.types.Image) -> str:
-    """The file of an image; one that is painted or packed is written to the folder."""
-    path = Path(bpy.path.abspath(image.filepath)) if image.filepath else None
-    if path is not None and path.is_file() and not image.is_dirty:
-        return str(path)
-    place = folder_of(head) / f"{meshes.identifier(image.name)}.png"
-    place.parent.mkdir(parents=True, exist_ok=True)
-    image.save(filepath=str(place), save_copy=True)
-    return place.name
+def key_of(head: bpy.types.Object, inputs: str = "") -> str:
+    """A digest of all that the groom of a head depends on: the recipe, and ``inputs`` or else those of now."""
+    document = Document(head, "recipe")
+    return _digest([document.text, document.changes, inputs or inputs_of(head)])
 
 
-def key_of(head: bpy.types.Object) -> str:
-    """A digest of all that the groom of a head depends on. Raises Refused for a mesh or guides that are empty."""
-    own, document = head.ringlet, Document(head, "recipe")
-    parts = [document.text, document.changes, head_arrays(head)[1], f"{own.show_hairs} {own.fraction:.6g} {scale():g}"]
+def inputs_of(head: bpy.types.Object) -> str:
+    """A digest of what a groom depends on besides its recipe. Raises Refused for a mesh, guides or images that are
+    empty."""
+    own = head.ringlet
+    parts = [head_arrays(head)[1], f"{own.show_hairs} {own.fraction:.6g} {scale():g}"]
     if own.guides is not None:
         parts.append(guide_arrays(head)[1])
-    parts += [f"{one.image.name} {one.image.is_dirty} {one.image.filepath}" for one in own.images if one.image]
+    parts += [f"{one.image.name} {images.stamp(one.image)}" for one in own.images if one.image]
+    return _digest(parts)
+
+
+def _digest(parts: list[str]) -> str:
     return blake2b("\0".join(parts).encode(), digest_size=16).hexdigest()
 
 
@@ -160,10 +163,13 @@ def watch(head: bpy.types.Object) -> None:
         return
     try:
         key = key_of(head)
-        if state.asked == key or (is_made(head, key) and Document(head, "recipe").settings):
+        if state.asked == key:
             return
         state.asked = key
-        ask(head)
+        if is_made(head, key) and Document(head, "recipe").settings:
+            state.message = ""
+        else:
+            ask(head)
     except Refused as error:
         state.asked, state.message = "", str(error)
 
@@ -185,17 +191,18 @@ def shown_curves(head: bpy.types.Object) -> list[bpy.types.Object]:
 def ask(head: bpy.types.Object) -> None:
     """Asks for the groom of a head."""
     own, state, name = head.ringlet, state_of(head), head.name_full
-    state.busy = True
-    sent = Document(head, "recipe").text, Document(head, "recipe").changes
+    sent, inputs = (Document(head, "recipe").text, Document(head, "recipe").changes), inputs_of(head)
+    recipe = recipe_message(head)
     send_files(head)
+    state.busy = True
     request = Request(
-        done=lambda message: _take(name, sent, message),
+        done=lambda message: _take(name, sent, inputs, message),
         failed=lambda line: _fail(name, line),
         lost=lambda line: _lose(name, line),
         progress=lambda stage, done, total: _progress(name, stage, done, total),
     )
     fraction = own.fraction if own.show_hairs else None
-    session.send("groom", request, folder=str(folder_of(head)), recipe=recipe_message(head), hairs=fraction)
+    session.send("groom", request, folder=str(folder_of(head)), recipe=recipe, hairs=fraction)
 
 
 def send_files(head: bpy.types.Object) -> None:
@@ -239,8 +246,11 @@ def _lose(name: str, line: str) -> None:
         state_of(head).asked = ""
 
 
-def _take(name: str, sent: tuple[str, str], message: Message) -> None:
-    """Shows a groom, and takes the text that has the changes in it if nothing has changed meanwhile."""
+def _take(name: str, sent: tuple[str, str], inputs: str, message: Message) -> None:
+    """Shows a groom, and takes the text that has the changes in it if it has not changed meanwhile.
+
+    sent, inputs: text and changes, and the digest of all else, that the groom was made of
+    """
     head = bpy.data.objects.get(name)
     if head is None or head.ringlet.recipe is None:
         return
@@ -254,7 +264,7 @@ def _take(name: str, sent: tuple[str, str], message: Message) -> None:
     show(head, message)
     sync_operators(head, header["settings"])
     if current:
-        state.asked = key_of(head)
+        state.asked = key_of(head, inputs)
         for thing in shown_curves(head):
             thing.data[MADE_OF] = state.asked
 
@@ -262,15 +272,17 @@ def _take(name: str, sent: tuple[str, str], message: Message) -> None:
 def show(head: bpy.types.Object, message: Message) -> None:
     """Shows the curves of a groom as children of the head."""
     arrays, hairs = message.arrays, any(name.startswith("hairs/") for name in message.arrays)
+    color, fiber = message.header["settings"].get("color"), message.header["fiber"]
+    dyed = color is not None and (color.get("dye") is not None or bool(color["dyes"]))
     made = material.hair_material(
         f"{head.name} hair",
-        message.header["fiber"],
+        fiber,
+        material.viewport_color(_own(arrays, "hairs" if hairs else "locks"), fiber, dyed=dyed),
         pigments=any(name.endswith("/melanin") for name in arrays),
-        dyed=message.header["settings"].get("color") is not None
-        and (message.header["settings"]["color"].get("dye") is not None or message.header["settings"]["color"]["dyes"]),
+        dyed=dyed,
     )
     for name, pointer in SHOWN.items():
-        own = {key.removeprefix(f"{name}/"): values for key, values in arrays.items() if key.startswith(f"{name}/")}
+        own = _own(arrays, name)
         thing = getattr(head.ringlet, pointer)
         if not own:
             if thing is not None:
@@ -283,6 +295,7 @@ def show(head: bpy.types.Object, message: Message) -> None:
             setattr(head.ringlet, pointer, thing)
             thing.hide_viewport = thing.hide_render = name != "hairs" and (hairs or name == "guides")
             thing.data.materials.append(made)
+            curves.draw_curls(bpy.context.scene)
         curves.set_curves(thing.data, material.with_pigments(own))
         thing.data.surface = head
         if head.data.uv_layers.active:
@@ -291,6 +304,11 @@ def show(head: bpy.types.Object, message: Message) -> None:
         thing.matrix_parent_inverse = rest_matrix(head).inverted()
     if (locks := head.ringlet.lock_curves) is not None and head.ringlet.lock_motion is None:
         locks.hide_viewport = locks.hide_render = hairs
+
+
+def _own(arrays: dict[str, np.ndarray], name: str) -> dict[str, np.ndarray]:
+    """The arrays of some curves."""
+    return {key.removeprefix(f"{name}/"): values for key, values in arrays.items() if key.startswith(f"{name}/")}
 
 
 def sync_operators(head: bpy.types.Object, settings: dict) -> None:
@@ -308,4 +326,4 @@ def remove(thing: bpy.types.Object) -> None:
     data = thing.data
     bpy.data.objects.remove(thing)
     if data is not None and not data.users:
-        bpy.data.hair_curves.remove(data)
+        bpy.data.batch_remove([data])

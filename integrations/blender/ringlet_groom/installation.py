@@ -56,26 +56,32 @@ class Installation:
         return self._thread is not None and self._thread.is_alive()
 
     def start(self, source: str) -> None:
-        """Begins; ``source`` is a wheel, or a name that pip finds online. Raises Refused for what cannot begin."""
+        """Begins; ``source`` is a wheel, or a name that pip finds online. Raises Refused for what cannot begin.
+
+        Wheels that a wheel needs are taken from its folder, and online where that is allowed.
+        """
         if self.running:
             raise Refused("Ringlet is being installed; wait for it")
         wheel = Path(bpy.path.abspath(source)) if source.endswith(".whl") else None
         if wheel is not None and not wheel.is_file():
             raise Refused(f"{wheel}: there is no such file; choose a wheel of Ringlet")
-        if wheel is None and not getattr(bpy.app, "online_access", True):
+        if wheel is None and not bpy.app.online_access:
             raise Refused("Online access is off; choose a wheel, or allow it in Preferences > System > Network")
         folder, python = environment(), preference("python") or sys.executable
-        self._thread = threading.Thread(target=self._run, args=(folder, python, str(wheel or source)), daemon=True)
+        words = [str(wheel), "--find-links", str(wheel.parent)] if wheel else [source]
+        if not bpy.app.online_access:
+            words.append("--no-index")
+        self._thread = threading.Thread(target=self._run, args=(folder, python, words), daemon=True)
         self._thread.start()
 
-    def _run(self, folder: Path, python: str, source: str) -> None:
+    def _run(self, folder: Path, python: str, source: list[str]) -> None:
         # A folder aside, which takes the place of the old one only when all is there.
         aside = folder.with_name(f"{folder.name}.new")
         steps = (
             ("Making an environment", [python, "-m", "venv", "--clear", str(aside)]),
             (
                 "Installing Ringlet",
-                [str(python_of(aside)), "-m", "pip", "install", "--disable-pip-version-check", source],
+                [str(python_of(aside)), "-m", "pip", "install", "--disable-pip-version-check", *source],
             ),
         )
         clean = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}

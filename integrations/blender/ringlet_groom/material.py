@@ -42,15 +42,35 @@ def with_pigments(arrays: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     return found
 
 
-def hair_material(name: str, fiber: Mapping[str, float], *, pigments: bool, dyed: bool) -> bpy.types.Material:
-    """Makes or updates a material. Users may change it; Ringlet changes the hair node of that name alone.
+def viewport_color(arrays: Mapping[str, np.ndarray], fiber: Mapping[str, float], *, dyed: bool) -> np.ndarray:
+    """Mean color of hairs, linear, shape (3,): of their dye, or of the absorption of their pigments (Chiang et al.
+    2016)."""
+    if dyed and "color" in arrays:
+        return arrays["color"].mean(axis=0)
+    melanin, redness = (float(np.mean(arrays.get(name, fiber[name]))) for name in ("melanin", "redness"))
+    melanin, redness = (float(values) for values in cycles_melanin(np.array(melanin), np.array(redness)))
+    rough = fiber["azimuthal_roughness"]
+    falloff = 5.969 - 0.215 * rough + 2.532 * rough**2 - 10.73 * rough**3 + 5.574 * rough**4 + 0.245 * rough**5
+    amount = -math.log1p(-melanin)
+    absorption = amount * (
+        (1.0 - redness) * np.array([0.506, 0.841, 1.653]) + redness * np.array([0.343, 0.733, 1.924])
+    )
+    return np.exp(-falloff * np.sqrt(absorption))
 
+
+def hair_material(
+    name: str, fiber: Mapping[str, float], color: np.ndarray, *, pigments: bool, dyed: bool
+) -> bpy.types.Material:
+    """Makes or updates a material. Users may change it; Ringlet changes its hair node and its color in the viewport.
+
+    color:    in the viewport, linear, shape (3,)
     pigments: whether the hairs have attributes of their pigments; a usual brown otherwise
     dyed:     whether their ``color`` counts instead
     """
     material = bpy.data.materials.get(name) or bpy.data.materials.new(name)
     if material.node_tree is None:  # before Blender 5
         material.use_nodes = True
+    material.diffuse_color = (*color.tolist(), 1.0)
     nodes = material.node_tree.nodes
     hair = nodes.get(NAME) or _new_hair(material)
     hair.parametrization = "COLOR" if dyed else "MELANIN"

@@ -69,16 +69,22 @@ def fingerprint(arrays: Arrays) -> str:
 
 
 @contextmanager
-def without_generators(things: list[bpy.types.Object]) -> Iterator[None]:
-    """Switches off modifiers that change the topology while the block runs."""
+def readable(things: list[bpy.types.Object]) -> Iterator[None]:
+    """Switches off modifiers that change the topology while the block runs, and shows things that are hidden: of these
+    Blender evaluates no modifiers."""
     switched = [one for thing in things for one in thing.modifiers if one.type in GENERATING and one.show_viewport]
+    hidden = [thing for thing in things if thing.hide_viewport]
     for one in switched:
         one.show_viewport = False
+    for thing in hidden:
+        thing.hide_viewport = False
     try:
         yield
     finally:
         for one in switched:
             one.show_viewport = True
+        for thing in hidden:
+            thing.hide_viewport = True
 
 
 def posed_points(thing: bpy.types.Object) -> np.ndarray:

@@ -217,6 +217,7 @@ class ClearMotion(OnHead, bpy.types.Operator):
     def act(self, _context: bpy.types.Context, head: bpy.types.Object) -> None:
         for name in ("hair_motion", "lock_motion"):
             shots.clear(head, name)
+        shots.clear_cloth(head)
 
 
 class Export(OnHead, bpy.types.Operator):

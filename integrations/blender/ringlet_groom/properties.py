@@ -216,13 +216,20 @@ class ImageMap(bpy.types.PropertyGroup):
     image: PointerProperty(type=bpy.types.Image)
 
 
+class PlayedCloth(bpy.types.PropertyGroup):
+    """A cloth, and the copy of it that plays its simulated motion"""
+
+    source: PointerProperty(type=bpy.types.Object)
+    moving: PointerProperty(type=bpy.types.Object)
+
+
 def _curves_only(_self: Any, thing: bpy.types.Object) -> bool:
     return thing.type == "CURVES"
 
 
 def _build() -> tuple[list[type], type]:
     """The classes of all sections and operators, and that of a head, in the order of their registration."""
-    classes: list[type] = [ImageMap]
+    classes: list[type] = [ImageMap, PlayedCloth]
     sections: dict[str, Any] = {}
     for kind in KINDS:
         for name, (description, settings) in schema.sections(kind).items():
@@ -272,6 +279,7 @@ def _build() -> tuple[list[type], type]:
         ),
         **{name: PointerProperty(type=bpy.types.Object) for name in ("guide_curves", "lock_curves", "hair_curves")},
         **{name: PointerProperty(type=bpy.types.Object) for name in ("lock_motion", "hair_motion")},
+        "cloth_motion": CollectionProperty(type=PlayedCloth),
     }
     top = type("RINGLET_PG_head", (bpy.types.PropertyGroup,), {"__annotations__": head})
     return [*classes, scalp, shape, top], top

@@ -19,6 +19,7 @@ from .refused import Refused
 from .session import Request, session
 
 COLLIDERS, CLOTH, CACHE, HAIR = "colliders.usdc", "cloth.usdc", "cache.usdc", "hair.usdc"
+CLOTH_PRIMS = "/groom/cloths/cloth"  # in the cache, where the scene of the file of cloth is referenced
 PIN = "pin"  # vertex group of cloth that is held
 MODIFIER = "Ringlet cache"
 STAGES = {"sim": "Simulating"}  # of Ringlet, as the panel says it
@@ -125,7 +126,7 @@ def advance() -> None:
 
 def _read_frame(run: Run) -> None:
     things = [thing for own in run.files.values() for thing in own]
-    with meshes.without_generators(things):
+    with meshes.readable(things):
         bpy.context.scene.frame_set(run.next_frame)
         for thing in things:
             run.points.setdefault(thing.name_full, []).append(meshes.posed_points(thing))
@@ -184,7 +185,8 @@ def shot_message(head: bpy.types.Object, run: Run | None = None) -> dict:
 
 def _meshes(head: bpy.types.Object, collection: str) -> list[bpy.types.Object]:
     found = getattr(head.ringlet, collection)
-    return [thing for thing in found.all_objects if thing.type == "MESH" and thing is not head] if found else []
+    others = [head, *(pair.moving for pair in head.ringlet.cloth_motion)]
+    return [thing for thing in found.all_objects if thing.type == "MESH" and thing not in others] if found else []
 
 
 def _progress(stage: str, done: int, total: int) -> None:
@@ -201,7 +203,9 @@ def _done(header: dict) -> None:
     _end("")
     shots.notes = header["notes"]
     if head is not None:
-        play(head, "lock_curves", "lock_motion", Path(header["path"]), "/groom/locks")
+        cache = Path(header["path"])
+        play(head, "lock_curves", "lock_motion", cache, "/groom/locks")
+        play_cloth(head, cache)
 
 
 def bake(head: bpy.types.Object) -> None:
@@ -235,13 +239,48 @@ def play(head: bpy.types.Object, still: str, moving: str, path: Path, prim: str)
     thing.data.surface = None
     for collection in head.users_collection or [bpy.context.scene.collection]:
         collection.objects.link(thing)
-    known = set(bpy.data.cache_files)
-    bpy.ops.cachefile.open(filepath=str(path))
-    modifier = thing.modifiers.new(MODIFIER, "MESH_SEQUENCE_CACHE")
-    modifier.cache_file = next(file for file in bpy.data.cache_files if file not in known)
-    modifier.object_path = prim
+    follow(thing, open_cache(path), prim)
     setattr(head.ringlet, moving, thing)
     show_motion(head)
+
+
+def play_cloth(head: bpy.types.Object, path: Path) -> None:
+    """Shows copies of cloth that follow a cache, in place of the cloth. Modifiers that change the topology stay."""
+    clear_cloth(head)
+    worn = [thing for thing in _meshes(head, "cloth") if not thing.hide_viewport]
+    file = open_cache(path) if worn else None
+    for source in worn:
+        thing = source.copy()
+        thing.name, thing.data = f"{source.name} simulated", source.data.copy()
+        thing.shape_key_clear()
+        thing.animation_data_clear()
+        thing.parent = None
+        thing.constraints.clear()
+        for one in [one for one in thing.modifiers if one.type not in meshes.GENERATING]:
+            thing.modifiers.remove(one)  # the cache has what these move
+        for collection in head.users_collection or [bpy.context.scene.collection]:
+            collection.objects.link(thing)
+        thing.matrix_world = Matrix()
+        modifier = follow(thing, file, f"{CLOTH_PRIMS}/{meshes.identifier(source.name)}")
+        modifier.read_data = {"VERT"}
+        thing.modifiers.move(len(thing.modifiers) - 1, 0)
+        pair = head.ringlet.cloth_motion.add()
+        pair.source, pair.moving = source, thing
+        source.hide_viewport = source.hide_render = True
+
+
+def open_cache(path: Path) -> bpy.types.CacheFile:
+    """A file of motion, opened once more."""
+    known = set(bpy.data.cache_files)
+    bpy.ops.cachefile.open(filepath=str(path))
+    return next(file for file in bpy.data.cache_files if file not in known)
+
+
+def follow(thing: bpy.types.Object, file: bpy.types.CacheFile, prim: str) -> bpy.types.Modifier:
+    """Lets an object follow a prim of a cache."""
+    modifier = thing.modifiers.new(MODIFIER, "MESH_SEQUENCE_CACHE")
+    modifier.cache_file, modifier.object_path = file, prim
+    return modifier
 
 
 def show_motion(head: bpy.types.Object) -> None:
@@ -256,9 +295,25 @@ def show_motion(head: bpy.types.Object) -> None:
 def clear(head: bpy.types.Object, moving: str) -> None:
     """Removes curves that follow a cache; the cache stays on disk."""
     if (thing := getattr(head.ringlet, moving)) is not None:
-        files = [one.cache_file for one in thing.modifiers if one.type == "MESH_SEQUENCE_CACHE" and one.cache_file]
-        grooming.remove(thing)
-        for file in files:
-            if not any(file == getattr(one, "cache_file", None) for own in bpy.data.objects for one in own.modifiers):
-                bpy.data.batch_remove([file])
+        remove_player(thing)
     show_motion(head)
+
+
+def clear_cloth(head: bpy.types.Object) -> None:
+    """Shows cloth again in place of the copies that follow a cache."""
+    for pair in head.ringlet.cloth_motion:
+        if pair.source is not None:
+            pair.source.hide_viewport = False
+            pair.source.hide_render = pair.moving is not None and pair.moving.hide_render
+        if pair.moving is not None:
+            remove_player(pair.moving)
+    head.ringlet.cloth_motion.clear()
+
+
+def remove_player(thing: bpy.types.Object) -> None:
+    """Removes an object that follows a cache, and the cache where nothing else does."""
+    files = [one.cache_file for one in thing.modifiers if one.type == "MESH_SEQUENCE_CACHE" and one.cache_file]
+    grooming.remove(thing)
+    for file in files:
+        if not any(file == getattr(one, "cache_file", None) for own in bpy.data.objects for one in own.modifiers):
+            bpy.data.batch_remove([file])

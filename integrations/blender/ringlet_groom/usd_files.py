@@ -15,6 +15,7 @@ import bpy
 import numpy as np
 
 from . import installation
+from .curves import draw_curls
 from .refused import Refused
 from .session import clean_environment
 
@@ -64,6 +65,7 @@ def import_groom(context: bpy.types.Context, path: str, *, show_locks: bool = Fa
         hidden = "hairs" in curves and not show_locks
         curves[name].hide_render = hidden
         curves[name].hide_set(hidden)
+    draw_curls(context.scene)
     context.view_layer.update()
     return Found(curves, surface)
 

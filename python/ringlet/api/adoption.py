@@ -39,7 +39,7 @@ SHAPE_POINTS = 40  # of the centre line of a lock
 FARTHEST_ROOT = 0.05  # [m] of a root from the head
 WIDTH, PITCH, HAND, PHASE = (f"adopted_{name}" for name in ("width", "pitch", "hand", "phase"))
 COILED = 0.2  # share of the locks that must be coiled for the recipe to have a curl
-MOST_PITCH = 0.9  # [m] of a lock without a coil, as the recipe has it
+MOST_PITCH = 0.9  # [m] of a lock, as the recipe has it
 MEASURED = 2000  # hairs whose distances are measured
 TURN_POINTS = 8  # points of a turn of a lock
 
@@ -259,9 +259,10 @@ def _guides(hair: _Hair, clumps: Clumps, scalp: Mesh) -> tuple[Curves, Coils]:
     guides = _packed(center)
     coiled = coils.coiled
     width, pitch = (_median(values[coiled], 1.0) for values in (coils.width, coils.pitch))
+    straight = hair.lengths[clumps.middle]  # pitch of a lock without a coil: a turn of no width
     guides.curve = {
         WIDTH: (coils.width / width).astype(np.float32),
-        PITCH: (np.where(coiled, np.minimum(coils.pitch, MOST_PITCH), MOST_PITCH) / pitch).astype(np.float32),
+        PITCH: (np.minimum(np.where(coiled, coils.pitch, straight), MOST_PITCH) / pitch).astype(np.float32),
         HAND: (coils.hand > 0.0).astype(np.float32),
         PHASE: np.zeros(len(clumps), np.float32),
     }
