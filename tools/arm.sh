@@ -69,7 +69,8 @@ build() { # the core, its tests and the wheel
         "$bin/python" -m pip wheel --quiet --no-build-isolation --no-deps --wheel-dir "$arm/wheel" \
         --config-settings=build-dir="$arm/core" --config-settings=cmake.define.RINGLET_TESTS=ON \
         --config-settings=cmake.define.CMAKE_TOOLCHAIN_FILE="$PWD/cmake/arm64.cmake" \
-        --config-settings=cmake.define.Python_INCLUDE_DIR="$sysroot/usr/include/python3.11" .
+        --config-settings=cmake.define.Python_INCLUDE_DIR="$sysroot/usr/include/python3.11" \
+        --config-settings=cmake.define.CMAKE_CXX_FLAGS="-idirafter $sysroot/usr/include" . # where Debian's pyconfig.h looks
 }
 
 core_tests() { OMP_NUM_THREADS=${OMP_NUM_THREADS:-1} qemu-aarch64 -L "$sysroot" "$arm/core/ringlet_tests" "$@"; }
