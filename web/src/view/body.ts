@@ -153,6 +153,15 @@ export class Body {
     geometry.computeVertexNormals();
   }
 
+  get triangles(): number {
+    return this.index.count / 3;
+  }
+
+  /** Draws some of its triangles; nothing: all. */
+  restrict(first = 0, count = this.triangles): void {
+    this.mesh.geometry.setDrawRange(3 * first, 3 * count);
+  }
+
   /** Lets it be seen as it is on one side. */
   turnTo(side: Side): void {
     this.mesh.geometry = this.caster.geometry = this.geometry(side);

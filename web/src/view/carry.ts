@@ -15,6 +15,7 @@ import {
 } from "three";
 import type { Hairs } from "../protocol";
 import { LOOKUP } from "./shaders";
+import type { Slices, Work } from "./slices";
 import type { LockTable } from "./table";
 import { Numbers, Shares, WIDTH } from "./textures";
 
@@ -136,6 +137,8 @@ export class Carry {
   private readonly material: RawShaderMaterial;
   private readonly numbers: Record<string, Numbers> = {};
   private readonly left: Shares;
+  /** Rows of the target that are up to date. */
+  private carried = 0;
 
   constructor(readonly hairs: Hairs) {
     this.left = new Shares(hairs.count * hairs.points);
@@ -226,12 +229,24 @@ export class Carry {
     this.put("lockPlace", table.places);
   }
 
-  update(renderer: WebGLRenderer): void {
-    if (!this.numbers["lockPoint"]) return;
-    const before = renderer.getRenderTarget();
-    renderer.setRenderTarget(this.target);
-    renderer.render(this.scene, this.camera);
-    renderer.setRenderTarget(before);
+  /** All hairs are to be carried again. */
+  begin(): void {
+    this.carried = 0;
+  }
+
+  /** Brings hairs to their places, up to a number of them; those that are there stay. */
+  *update(renderer: WebGLRenderer, hairs: number, slices: Slices): Work {
+    const done = this.carried;
+    const rows = Math.min(this.target.height, Math.ceil((hairs * this.hairs.points) / WIDTH));
+    yield* slices.draw("carry", rows - done, (first, count) => {
+      this.target.scissorTest = true;
+      this.target.scissor.set(0, done + first, WIDTH, count);
+      const before = renderer.getRenderTarget();
+      renderer.setRenderTarget(this.target);
+      renderer.render(this.scene, this.camera);
+      renderer.setRenderTarget(before);
+      this.carried = done + first + count;
+    });
   }
 
   /** The points of the first hairs, as they are on the card: four numbers a point. */

@@ -19,6 +19,7 @@ import {
   WebGLRenderTarget,
 } from "three";
 import { LOOKUP, TONE } from "./shaders";
+import type { Slices, Work } from "./slices";
 import type { Grid, Matter } from "./volume";
 
 const MOST = 300_000; // points that are added up; fewer hairs stand for all
@@ -30,7 +31,7 @@ precision highp sampler2D;
 ${LOOKUP}
 ${TONE}
 uniform highp sampler2D hairPoints;
-uniform int points, every;
+uniform int points, every, firstHair;
 uniform vec3 origin;
 uniform ivec3 counts;
 uniform int across;   // slices side by side
@@ -39,7 +40,7 @@ uniform float voxel, share;
 uniform bool tangents; // adds up directions from root to tip, in place of tones
 out vec4 mass;
 void main() {
-  int k = gl_VertexID * every, at = gl_InstanceID * points;
+  int hair = gl_InstanceID + firstHair, k = gl_VertexID * every, at = hair * points;
   vec4 here = lookup(hairPoints, at + k);
   vec3 next = here.xyz;
   float way = 0.0; // along the hair, which the chord to the next point cuts short where it bends
@@ -51,7 +52,7 @@ void main() {
   ivec3 cell = ivec3(floor((here.xyz - origin) / voxel));
   float projected = 0.7853982 * here.w * way / (voxel * voxel * voxel);
   vec3 along = normalize(next - here.xyz + vec3(0.0, 1e-9, 0.0));
-  vec3 value = tangents ? along : toneOf(gl_InstanceID, float(k) / float(points - 1));
+  vec3 value = tangents ? along : toneOf(hair, float(k) / float(points - 1));
   mass = projected / share * vec4(value, 1.0);
   vec2 pixel = vec2(ivec2(cell.z % across, cell.z / across) * counts.xy + cell.xy) + 0.5;
   bool outside = any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, counts));
@@ -91,6 +92,7 @@ export class Density {
         voxel: { value: 1 },
         share: { value: 1 },
         tangents: { value: false },
+        firstHair: { value: 0 },
       },
       blending: CustomBlending,
       blendEquation: AddEquation,
@@ -105,49 +107,76 @@ export class Density {
     this.scene.add(this.mesh);
   }
 
+  /** Number of the hairs that are added up, of so many: the first ones. */
+  measured(hairs: number): number {
+    return Math.min(hairs, Math.ceil(MOST / this.stations));
+  }
+
+  /** Every so many points of a hair one is added up, of as many stations. */
+  private get every(): number {
+    return Math.max(1, Math.floor((this.hair["points"].value as number) / 48));
+  }
+
+  private get stations(): number {
+    return Math.ceil(((this.hair["points"].value as number) - 1) / this.every);
+  }
+
   /** Extinction, tone and direction of the hair in the voxels. */
-  measure(renderer: WebGLRenderer, grid: Grid, hairs: number): Pick<Matter, "hair" | "tone" | "along"> {
+  *measure(renderer: WebGLRenderer, grid: Grid, hairs: number, slices: Slices): Work<Pick<Matter, "hair" | "tone" | "along">> {
     const [nx, ny, nz] = grid.counts;
     const across = Math.ceil(Math.sqrt(nz));
     const [width, height] = [across * nx, Math.ceil(nz / across) * ny];
-    const points = this.hair["points"].value as number;
-    const every = Math.max(1, Math.floor(points / 48));
-    const stations = Math.ceil((points - 1) / every);
-    const drawn = Math.min(hairs, Math.ceil(MOST / stations));
-    const target = this.prepare(renderer, width, height, stations);
-    (this.mesh.geometry as InstancedBufferGeometry).instanceCount = drawn;
+    const drawn = this.measured(hairs);
+    const target = this.prepare(renderer, width, height);
     const { uniforms } = this.material;
-    uniforms["every"].value = every;
+    uniforms["every"].value = this.every;
     uniforms["origin"].value = grid.origin;
     uniforms["counts"].value = grid.counts;
     uniforms["across"].value = across;
     uniforms["extent"].value = [width, height];
     uniforms["voxel"].value = grid.size;
     uniforms["share"].value = drawn / Math.max(hairs, 1);
-    const [x, y, z, hair] = this.sum(renderer, target, grid, across, false);
-    const [dx, dy, dz] = this.sum(renderer, target, grid, across, true);
+    const sums: Float32Array[][] = [];
+    for (const tangents of [false, true]) {
+      uniforms["tangents"].value = tangents;
+      yield* this.add(renderer, target, drawn, slices);
+      sums.push(yield* slices.compute(this.sum(renderer, target, grid, across)));
+    }
+    const [[x, y, z, hair], [dx, dy, dz]] = sums;
     return { hair, tone: [x, y, z], along: [dx, dy, dz] };
   }
 
+  /** Adds up hairs on the graphics card. */
+  private add(renderer: WebGLRenderer, target: WebGLRenderTarget, hairs: number, slices: Slices): Work {
+    return slices.draw("density", hairs, (first, count) => {
+      (this.mesh.geometry as InstancedBufferGeometry).instanceCount = count;
+      this.material.uniforms["firstHair"].value = first;
+      const before = renderer.getRenderTarget();
+      renderer.setRenderTarget(target);
+      renderer.setClearColor(0x000000, 0);
+      if (!first) renderer.clear();
+      renderer.render(this.scene, this.camera);
+      renderer.setRenderTarget(before);
+    });
+  }
+
   /** Sums in the voxels: three numbers times the extinction, and the extinction. */
-  private sum(renderer: WebGLRenderer, target: WebGLRenderTarget, grid: Grid, across: number, tangents: boolean) {
+  private *sum(renderer: WebGLRenderer, target: WebGLRenderTarget, grid: Grid, across: number): Generator<void, Float32Array[]> {
     const [nx, ny, nz] = grid.counts;
-    this.material.uniforms["tangents"].value = tangents;
-    const before = renderer.getRenderTarget();
-    renderer.setRenderTarget(target);
-    renderer.setClearColor(0x000000, 0);
-    renderer.clear();
-    renderer.render(this.scene, this.camera);
     const values = read(renderer, target);
-    renderer.setRenderTarget(before);
     const channels = [0, 1, 2, 3].map(() => new Float32Array(grid.voxels));
-    for (let k = 0, to = 0; k < nz; k++)
+    for (let k = 0, to = 0; k < nz; k++) {
       for (let j = 0; j < ny; j++)
         for (let i = 0; i < nx; i++, to++) {
           const from = 4 * ((k % across) * nx + i + target.width * (Math.floor(k / across) * ny + j));
           for (let c = 0; c < 4; c++) channels[c][to] = values[from + c];
         }
-    for (const channel of channels) blur(channel, grid.counts);
+      yield;
+    }
+    for (const channel of channels) {
+      blur(channel, grid.counts);
+      yield;
+    }
     return channels;
   }
 
@@ -157,7 +186,8 @@ export class Density {
     this.mesh.geometry.dispose();
   }
 
-  private prepare(renderer: WebGLRenderer, width: number, height: number, stations: number): WebGLRenderTarget {
+  private prepare(renderer: WebGLRenderer, width: number, height: number): WebGLRenderTarget {
+    const { stations } = this;
     if (this.mesh.geometry.index?.count !== stations) {
       this.mesh.geometry.dispose();
       const geometry = new InstancedBufferGeometry();

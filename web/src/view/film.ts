@@ -4,6 +4,7 @@
 import {
   AddEquation,
   CustomBlending,
+  DepthTexture,
   GLSL3,
   HalfFloatType,
   Mesh,
@@ -12,13 +13,16 @@ import {
   OrthographicCamera,
   PlaneGeometry,
   RawShaderMaterial,
+  RedIntegerFormat,
   RGBAFormat,
   Scene,
   UnsignedByteType,
+  UnsignedIntType,
   type WebGLRenderer,
   WebGLRenderTarget,
 } from "three";
 import type { Box } from "./box";
+import type { Slices, Work } from "./slices";
 import { DEVELOP } from "./shaders";
 
 const VERTEX = /* glsl */ `
@@ -64,7 +68,9 @@ void main() {
 export class Film {
   /** Number of drawings on the film. */
   drawings = 0;
-  private drawing: WebGLRenderTarget;
+  drawing: WebGLRenderTarget;
+  /** The hairs that are seen, where they are shaded after that: see `Hair`. */
+  seen: WebGLRenderTarget | null = null;
   private sum: WebGLRenderTarget;
   private readonly scene = new Scene();
   private readonly camera = new OrthographicCamera();
@@ -80,9 +86,13 @@ export class Film {
   });
 
   /** samples: of each drawing */
-  constructor(private readonly samples: number) {
+  constructor(
+    private readonly samples: number,
+    private readonly deferred: boolean,
+  ) {
     this.drawing = target(1, 1, samples, true);
     this.sum = target(1, 1, 0, false);
+    if (deferred) this.seen = seenIn(this.drawing);
     Object.assign(this.add, {
       blending: CustomBlending,
       blendEquation: AddEquation,
@@ -110,23 +120,34 @@ export class Film {
     this.sum.dispose();
     this.drawing = target(width, height, this.samples, true);
     this.sum = target(width, height, 0, false);
+    this.seen?.dispose();
+    if (this.deferred) this.seen = seenIn(this.drawing);
   }
 
-  /** Begins a drawing: what is rendered until `expose` is on it. */
+  /** Begins a drawing: what is rendered on it until `expose` is added. */
   open(renderer: WebGLRenderer): void {
-    renderer.setRenderTarget(this.drawing);
     renderer.setClearColor(0x000000, 0);
-    renderer.clear();
+    for (const one of this.seen ? [this.drawing, this.seen] : [this.drawing]) {
+      one.scissorTest = false;
+      renderer.setRenderTarget(one);
+      renderer.clear();
+    }
+    renderer.setRenderTarget(null);
   }
 
   /** Adds the drawing. */
-  expose(renderer: WebGLRenderer): void {
-    this.add.uniforms["drawing"].value = this.drawing.texture;
-    renderer.setRenderTarget(this.sum);
-    renderer.setClearColor(0x000000, 0);
-    if (!this.drawings) renderer.clear();
-    this.fill(renderer, this.add);
-    renderer.setRenderTarget(null);
+  *expose(renderer: WebGLRenderer, slices: Slices): Work {
+    const { sum } = this;
+    yield* slices.draw("expose", sum.height, (first, count) => {
+      this.add.uniforms["drawing"].value = this.drawing.texture;
+      sum.scissorTest = true;
+      sum.scissor.set(0, first, sum.width, count);
+      renderer.setRenderTarget(sum);
+      renderer.setClearColor(0x000000, 0);
+      if (!this.drawings) renderer.clear();
+      this.fill(renderer, this.add);
+      renderer.setRenderTarget(null);
+    });
     this.drawings++;
   }
 
@@ -177,6 +198,21 @@ function material(fragmentShader: string, uniforms: Record<string, { value: unkn
     uniforms,
     depthTest: false,
     depthWrite: false,
+  });
+}
+
+/** For the hairs that are seen in a drawing, which are hidden by the bodies on it. */
+function seenIn(drawing: WebGLRenderTarget): WebGLRenderTarget {
+  const { width, height } = drawing;
+  const depthTexture = new DepthTexture(width, height);
+  drawing.depthTexture = depthTexture;
+  return new WebGLRenderTarget(width, height, {
+    type: UnsignedIntType,
+    format: RedIntegerFormat,
+    internalFormat: "R32UI",
+    minFilter: NearestFilter,
+    magFilter: NearestFilter,
+    depthTexture,
   });
 }
 

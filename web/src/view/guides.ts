@@ -44,11 +44,6 @@ export class GuideLines {
     this.lines.visible = on;
   }
 
-  /** Whether there is something to draw. */
-  get active(): boolean {
-    return this.lines.visible || this.plane.visible;
-  }
-
   /** Shows the plane in which a brush is mirrored, or hides it. */
   showPlane(on: boolean): void {
     this.plane.visible = on && this.guides !== null;

@@ -5,17 +5,29 @@ import {
   GLSL3,
   InstancedBufferGeometry,
   Mesh,
+  PlaneGeometry,
   RawShaderMaterial,
   Scene,
   Vector3,
+  type Texture,
   type WebGLRenderer,
 } from "three";
 import type { Colors, Frame, Hairs, Locks } from "../protocol";
 import { Carry } from "./carry";
 import { Density } from "./density";
-import { FiberTable, type Roughness, variances } from "./fiber";
-import { DEPTH_FRAGMENT, DEPTH_VERTEX, HAIR_FRAGMENT, HAIR_VERTEX } from "./hair_shader";
+import { FiberTable, type Roughness, type Transport, variances } from "./fiber";
+import {
+  DEFERRED_FRAGMENT,
+  DEFERRED_VERTEX,
+  DEPTH_FRAGMENT,
+  DEPTH_VERTEX,
+  HAIR_FRAGMENT,
+  HAIR_VERTEX,
+  SEEN_FRAGMENT,
+  SEEN_VERTEX,
+} from "./hair_shader";
 import type { Lights } from "./lights";
+import { complete, Slices, type Work } from "./slices";
 import { type LockTable, lockTable } from "./table";
 import { Colours } from "./textures";
 import { type Beam, Grid, LightVolume, shell, type Surface } from "./volume";
@@ -23,10 +35,15 @@ import { type Beam, Grid, LightVolume, shell, type Surface } from "./volume";
 /** A hair colour: linear reflectance in red, green and blue, and the roughness of the fiber along and around it. */
 export type Colour = [number, number, number, number, number];
 
-const KEPT = 250; // time for which the light in the hair is kept while something moves [ms]
-
 /** Where locks are; in a frame also where roots are from those of their locks, and which hairs are drawn to theirs. */
 type Placed = Pick<Locks, "points" | "axis"> & Partial<Pick<Frame, "root" | "drawn" | "left">>;
+
+/** What the light in the hair is computed for: the state of hair and bodies by a number that grows, lamps, surroundings. */
+interface Lit {
+  revision: number;
+  beams: Beam[];
+  ambient: Vector3;
+}
 
 type Uniforms = Record<string, { value: unknown }>;
 
@@ -44,11 +61,15 @@ export class Hair {
   private readonly shared: Uniforms;
   private readonly material: RawShaderMaterial;
   private readonly first: RawShaderMaterial;
+  private readonly ribbons: Mesh[];
   private readonly density: Density;
-  private stale = true;
-  private filled = false;
-  /** Lamps and surroundings of the light in the hair, and when it was computed. */
-  private lit: { at: number; beams: Beam[]; ambient: Vector3 } | null = null;
+  /** Grows with each change of what the light is in: hair and bodies. */
+  private revision = 0;
+  /** Revision with which the light volume is filled. */
+  private filled = -1;
+  /** The light that is seen, and that which is being computed. */
+  private lit: Lit | null = null;
+  private lighting: { lit: Lit; work: Work } | null = null;
   private stride = 1;
   private overlay: Uint8Array | undefined;
   private own: Colors | null = null;
@@ -59,7 +80,14 @@ export class Hair {
   private fiberKey = "";
   private roughness: Roughness = { along: 0.25, around: 0.38 };
 
-  constructor(private readonly lights: Lights) {
+  /**
+   * deferred: whether hairs are shaded once it is known which are seen. A processor shades hidden ones too otherwise; a
+   * card does not, and its several samples of a pixel want hairs that are shaded on their own.
+   */
+  constructor(
+    private readonly lights: Lights,
+    deferred: boolean,
+  ) {
     this.shared = {
       hairPoints: { value: null },
       points: { value: 2 },
@@ -75,7 +103,7 @@ export class Hair {
       firstHair: { value: 0 },
       eye: { value: new Vector3() },
     };
-    this.material = this.make(HAIR_VERTEX, HAIR_FRAGMENT, {
+    const uniforms = {
       ...drawn,
       ...lights.uniforms,
       ...this.volume.uniforms,
@@ -88,19 +116,25 @@ export class Hair {
       tilt: { value: 0.035 },
       highlight: { value: new Vector3(0.2, 0.55, 0.9) },
       showOverlay: { value: 0 },
-    });
-    this.first = this.make(DEPTH_VERTEX, DEPTH_FRAGMENT, drawn);
-    this.first.colorWrite = false;
-    this.density = new Density(this.shared);
-    for (const [scene, material] of [
-      [this.scene, this.material],
-      [this.firstScene, this.first],
-    ] as const) {
-      const mesh = new Mesh(this.geometry, material);
-      mesh.frustumCulled = false;
-      mesh.name = "hair";
-      scene.add(mesh);
+      seen: { value: null },
+    };
+    if (deferred) {
+      this.material = this.make(DEFERRED_VERTEX, DEFERRED_FRAGMENT, uniforms);
+      this.material.depthTest = this.material.depthWrite = false;
+      this.first = this.make(SEEN_VERTEX, SEEN_FRAGMENT, uniforms);
+    } else {
+      this.material = this.make(HAIR_VERTEX, HAIR_FRAGMENT, uniforms);
+      this.first = this.make(DEPTH_VERTEX, DEPTH_FRAGMENT, uniforms);
+      this.first.colorWrite = false;
     }
+    this.density = new Density(this.shared);
+    const ribbons = new Mesh(this.geometry, this.first);
+    const shaded = new Mesh(deferred ? new PlaneGeometry(2, 2) : this.geometry, this.material);
+    this.ribbons = deferred ? [ribbons] : [ribbons, shaded];
+    for (const mesh of [ribbons, shaded]) mesh.frustumCulled = false;
+    for (const mesh of this.ribbons) mesh.name = "hair";
+    this.firstScene.add(ribbons);
+    this.scene.add(shaded);
   }
 
   get count(): number {
@@ -117,12 +151,13 @@ export class Hair {
   setHairs(hairs: Hairs): void {
     this.carry?.dispose();
     this.carry = new Carry(hairs);
+    this.lighting = null;
     this.shared["points"].value = hairs.points;
     this.material.uniforms["hairs"].value = hairs.count;
     this.setStride(this.stride, true);
     this.recolour();
     if (this.locks) this.setLocks(this.locks);
-    this.stale = true;
+    this.moved();
   }
 
   setLocks(locks: Locks): void {
@@ -141,14 +176,13 @@ export class Hair {
     this.carry?.setDrawn(drawn ?? new Uint32Array(), left ?? new Uint8Array());
     measure(this.box, points);
     this.carry?.setLocks(this.table);
-    this.stale = true;
+    this.moved();
   }
 
   /** Sets which locks are marked: 1 isolated, 2 chosen. */
   mark(marked: ArrayLike<number>): void {
     this.setMarks(marked);
     if (this.table) this.carry?.setPlaces(this.table);
-    this.stale = true;
   }
 
   /** Colours of the hairs by their pigments; without stations they have none. */
@@ -176,7 +210,7 @@ export class Hair {
     this.material.uniforms["tilt"].value = ((own?.tilt ?? 2) * Math.PI) / 180;
     if (shown) this.roughness = { along: own.roughness, around: own.azimuthal_roughness };
     else if (named) this.roughness = { along: named[3], around: named[4] };
-    this.filled = false;
+    this.revision++;
   }
 
   /** The table of the fiber as it is rough now, under lamps of their size. */
@@ -191,7 +225,7 @@ export class Hair {
     uniforms["fiberTable"].value = this.fiber.texture;
     uniforms["fiberTransport"].value = this.fiber.means;
     (uniforms["variance"].value as Vector3).fromArray(variances(roughness.along));
-    this.lit = null;
+    this.revision++;
     return this.fiber;
   }
 
@@ -202,7 +236,6 @@ export class Hair {
     this.overlay = values;
     this.spread();
     if (this.table) this.carry?.setLocks(this.table);
-    this.stale = true;
   }
 
   private setMarks(marked: ArrayLike<number>): void {
@@ -223,49 +256,86 @@ export class Hair {
     }
   }
 
-  /** Draws a part of the hairs, from the one of a number on, wider, so that they cover as much as all. */
-  setDetail(fraction: number, stride: number, first: number): void {
-    const drawn = Math.max(1, Math.round(this.count * fraction));
-    this.geometry.instanceCount = drawn;
-    const { uniforms } = this.material;
-    uniforms["thicken"].value = this.count / drawn;
-    uniforms["firstHair"].value = first;
-    this.setStride(stride, false);
+  /** Number of the hairs that stand for all in a drawing. */
+  private drawn(fraction: number): number {
+    return Math.max(1, Math.round(this.count * fraction));
   }
 
-  /** Brings the hairs to their places; true when they have moved since the last time. */
-  update(renderer: WebGLRenderer): boolean {
-    if (!this.stale || !this.carry || !this.table) return false;
-    this.stale = this.filled = false;
-    this.carry.update(renderer);
+  /** Draws a part of the hairs, the first, the second or another one, wider, so that they cover as much as all. */
+  *draw(fraction: number, stride: number, number: number, slices: Slices, render: () => void): Work {
+    const begin = Math.round(number * fraction * this.count) % Math.max(this.count, 1);
+    yield* slices.draw("hairs", this.drawn(fraction), (first, count) => {
+      const { uniforms } = this.material;
+      uniforms["thicken"].value = this.count / this.drawn(fraction);
+      uniforms["firstHair"].value = begin + first;
+      this.setStride(stride, false);
+      this.geometry.instanceCount = count;
+      render();
+    });
+  }
+
+  /** Brings the hairs of some drawings to their places. */
+  *update(renderer: WebGLRenderer, fraction: number, drawings: number, slices: Slices): Work {
+    if (!this.carry || !this.table) return;
+    yield* this.carry.update(renderer, Math.min(this.count, Math.ceil(drawings * fraction * this.count) + 1), slices);
     this.shared["hairPoints"].value = this.carry.points;
     for (const name of ["hairPlace", "lockPlace", "lockPoint"])
       this.material.uniforms[name].value = this.carry.texture(name);
-    return true;
   }
 
-  /** Lights the mass of the hair, and the bodies within its reach. While something moves, a light nearly right is kept. */
-  light(renderer: WebGLRenderer, surfaces: () => Surface[], moving: boolean): void {
+  /**
+   * Lights the mass of the hair, and the bodies within its reach. While something moves, each picture takes a slice of
+   * that work, and is lit as it was before.
+   */
+  *light(renderer: WebGLRenderer, surfaces: () => Surface[], moving: boolean, slices: Slices): Work {
     if (!this.carry || !this.table || this.box.isEmpty()) return;
     const { transport } = this.tabulate();
-    const kept = moving && this.lit !== null && performance.now() - this.lit.at < KEPT;
-    if (!this.filled && !kept) {
+    const { revision } = this;
+    const now: Lit = { revision, beams: this.lights.beams.map(copied), ambient: this.lights.ambient };
+    if (this.lit && isSame(now, this.lit)) return;
+    const kept = moving && this.lit !== null;
+    if (!this.lighting || !(kept || isSame(now, this.lighting.lit)))
+      this.lighting = { lit: now, work: this.computeLight(renderer, surfaces, now, transport, slices) };
+    const { lit, work } = this.lighting;
+    if (!kept) yield* work;
+    else if (!work.next(0).done) return;
+    this.lit = lit;
+    this.lighting = null;
+  }
+
+  private *computeLight(
+    renderer: WebGLRenderer,
+    surfaces: () => Surface[],
+    { revision, beams, ambient }: Lit,
+    transport: Transport,
+    slices: Slices,
+  ): Work {
+    if (this.filled !== revision) {
       const grid = Grid.of(this.reach);
       const bodies = surfaces();
-      this.volume.fill({ grid, ...this.density.measure(renderer, grid, this.count), ...shell(grid, bodies) });
-      this.filled = true;
-      this.lit = null;
+      yield* this.update(renderer, this.density.measured(this.count) / this.count, 1, slices);
+      const hair = yield* this.density.measure(renderer, grid, this.count, slices);
+      const skin = yield* slices.compute(shell(grid, bodies));
+      this.volume.fill({ grid, ...hair, ...skin });
+      this.filled = revision;
     }
-    const { beams, ambient } = this.lights;
-    const now = { at: performance.now(), beams: beams.map(copied), ambient };
-    if (this.lit && (kept || isSame(now, this.lit))) return;
-    this.lit = now;
-    this.volume.light(beams, ambient, transport);
+    yield* slices.compute(this.volume.light(beams, ambient, transport));
   }
 
   /** Bodies have moved: the light in the hair is to be computed again. */
   relight(): void {
-    this.filled = false;
+    this.revision++;
+  }
+
+  /** Hairs have other places. */
+  private moved(): void {
+    this.revision++;
+    this.carry?.begin();
+  }
+
+  /** Which hairs are seen, pixel by pixel: what is drawn from `firstScene`. */
+  set seen(points: Texture) {
+    this.material.uniforms["seen"].value = points;
   }
 
   /** What the light volume covers: the hair, and what it throws shadows on. */
@@ -285,6 +355,7 @@ export class Hair {
   }
 
   read(renderer: WebGLRenderer, hairs: number): Float32Array {
+    complete(this.update(renderer, 1, 1, new Slices()));
     return this.carry?.read(renderer, hairs) ?? new Float32Array();
   }
 
@@ -321,8 +392,7 @@ export class Hair {
     this.geometry = new InstancedBufferGeometry();
     this.geometry.setIndex([...index]);
     this.geometry.instanceCount = Math.min(instanceCount, this.count);
-    for (const scene of [this.scene, this.firstScene])
-      (scene.children[0] as Mesh).geometry = this.geometry;
+    for (const mesh of this.ribbons) mesh.geometry = this.geometry;
   }
 }
 
@@ -330,7 +400,8 @@ function copied({ from, place, reach, radius, strength }: Beam): Beam {
   return { from: from.clone(), place: place.clone(), reach, radius, strength: strength.clone() };
 }
 
-function isSame(one: { beams: Beam[]; ambient: Vector3 }, other: { beams: Beam[]; ambient: Vector3 }): boolean {
+function isSame(one: Lit, other: Lit): boolean {
+  if (one.revision !== other.revision) return false;
   const same = (a: Vector3, b: Vector3) => a.distanceToSquared(b) < 1e-12;
   const beams = one.beams.every((beam, k) => {
     const { place, reach, radius, strength } = other.beams[k];

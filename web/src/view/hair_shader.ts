@@ -1,7 +1,7 @@
 // How a hair catches light: the fiber of the path tracer under the lamps, and what hairs scatter to each other.
 
 import { FIBER } from "./fiber";
-import { LIGHTS, LOOKUP, RIBBON, TONE } from "./shaders";
+import { LIGHTS, LOOKUP, POINTS, RIBBON, TONE } from "./shaders";
 import { VOLUME } from "./volume";
 
 const HEAD = /* glsl */ `
@@ -11,37 +11,43 @@ precision highp sampler2D;
 precision highp sampler3D;
 `;
 
-export const HAIR_VERTEX = /* glsl */ `${HEAD}
-${LOOKUP}
-${RIBBON}
+/** What is read of a hair at a fraction of it: colour, and what is marked or laid over it. */
+const TRAITS = /* glsl */ `
 ${TONE}
 uniform sampler2D hairPlace, lockPlace, lockPoint;
-out vec3 place, direction, q;
-out float along, mark, overlay;
-invariant gl_Position;
-
-void main() {
-  ribbon(place, direction, along);
-  vec4 sits = lookup(hairPlace, hairNumber()), lock = lookup(lockPlace, int(sits.x));
+void traits(int hair, float along, out vec3 q, out float mark, out float overlay) {
+  vec4 sits = lookup(hairPlace, hair), lock = lookup(lockPlace, int(sits.x));
   mark = lock.z;
   float at = along * lock.y * sits.y;
   int row = int(lock.x) + int(at);
   overlay = mix(lookup(lockPoint, row).w, lookup(lockPoint, row + 1).w, fract(at));
-  q = toneOf(hairNumber(), along);
+  q = toneOf(hair, along);
+}
+`;
+
+export const HAIR_VERTEX = /* glsl */ `${HEAD}
+${LOOKUP}
+${RIBBON}
+${TRAITS}
+out vec3 place, direction, q;
+out float mark, overlay;
+invariant gl_Position;
+
+void main() {
+  float along;
+  ribbon(place, direction, along);
+  traits(hairNumber(), along, q, mark, overlay);
   gl_Position = projectionMatrix * viewMatrix * vec4(place, 1.0);
 }
 `;
 
-export const HAIR_FRAGMENT = /* glsl */ `${HEAD}
+const SHADE = /* glsl */ `${HEAD}
 ${LIGHTS}
 ${FIBER}
 ${VOLUME}
 uniform vec3 eye;
 uniform vec3 highlight;
 uniform float showOverlay;
-in vec3 place, direction, q;
-in float along, mark, overlay;
-out vec4 color;
 
 vec3 heat(float x) { // from pale over orange to dark red
   return x < 0.5 ? mix(vec3(0.72, 0.70, 0.62), vec3(0.86, 0.36, 0.06), 2.0 * x) : mix(vec3(0.86, 0.36, 0.06), vec3(0.42, 0.01, 0.03), 2.0 * x - 1.0);
@@ -51,7 +57,8 @@ vec3 ramp(float x) { // from blue over pale to red
   return x < 0.5 ? mix(vec3(0.10, 0.28, 0.62), vec3(0.72, 0.70, 0.62), 2.0 * x) : mix(vec3(0.72, 0.70, 0.62), vec3(0.80, 0.10, 0.06), 2.0 * x - 1.0);
 }
 
-void main() {
+// Light that a place on a hair sends to the eye. q: C^¼
+vec3 shade(vec3 place, vec3 direction, vec3 q, float mark, float overlay) {
   vec3 T = normalize(direction), V = normalize(eye - place);
   vec3 omega, cosine;
   float spread, disorder;
@@ -86,7 +93,68 @@ void main() {
     light = tint * lit * mix(0.3, 1.0, exp(-depth[0]));
   }
   if (mark > 0.5) light = mix(light, highlight * mix(0.25, 1.0, exp(-depth[0])) + light, mark > 1.5 ? 0.85 : 0.45);
-  color = vec4(light, 1.0);
+  return light;
+}
+`;
+
+export const HAIR_FRAGMENT = /* glsl */ `${SHADE}
+in vec3 place, direction, q;
+in float mark, overlay;
+out vec4 color;
+void main() { color = vec4(shade(place, direction, q, mark, overlay), 1.0); }
+`;
+
+/** Deferred shading. First each pixel gets the number of the point where the part of the hair ends that is seen there. */
+export const SEEN_VERTEX = /* glsl */ `${HEAD}
+${LOOKUP}
+${RIBBON}
+flat out uint seenPoint;
+void main() {
+  vec3 place, tangent;
+  float along;
+  ribbon(place, tangent, along);
+  seenPoint = uint(hairNumber() * points + pointNumber()) + 1u;
+  gl_Position = projectionMatrix * viewMatrix * vec4(place, 1.0);
+}
+`;
+export const SEEN_FRAGMENT = /* glsl */ `${HEAD}
+flat in uint seenPoint;
+out uint color;
+void main() { color = seenPoint; }
+`;
+
+/** Then pixels are shaded, at the place between two points that is nearest on the screen. */
+export const DEFERRED_VERTEX = /* glsl */ `
+in vec3 position;
+out vec2 screen;
+void main() {
+  screen = position.xy;
+  gl_Position = vec4(position.xy, 0.0, 1.0);
+}
+`;
+export const DEFERRED_FRAGMENT = /* glsl */ `${SHADE}
+${LOOKUP}
+${POINTS}
+${TRAITS}
+uniform highp usampler2D seen;
+in vec2 screen;
+out vec4 color;
+vec2 onScreen(vec3 place) {
+  vec4 at = projectionMatrix * viewMatrix * vec4(place, 1.0);
+  return at.xy / at.w;
+}
+void main() {
+  uint found = texelFetch(seen, ivec2(gl_FragCoord.xy), 0).r;
+  if (found == 0u) discard;
+  int hair = int(found - 1u) / points, last = int(found - 1u) - hair * points, first = (last - 1) / stride * stride;
+  vec3 from = hairAt(hair, first).xyz, to = hairAt(hair, last).xyz;
+  vec2 square = vec2(projectionMatrix[1][1] / projectionMatrix[0][0], 1.0), begin = onScreen(from);
+  vec2 way = square * (onScreen(to) - begin);
+  float t = clamp(dot(square * (screen - begin), way) / max(dot(way, way), 1e-12), 0.0, 1.0);
+  vec3 q;
+  float mark, overlay;
+  traits(hair, mix(float(first), float(last), t) / float(points - 1), q, mark, overlay);
+  color = vec4(shade(mix(from, to, t), mix(tangentAt(hair, first), tangentAt(hair, last), t), q, mark, overlay), 1.0);
 }
 `;
 

@@ -1,12 +1,13 @@
 // Draws the looks of a stage: light in the hair, drawings on a film, and what is over the picture.
 
-import { Vector2, WebGLRenderer } from "three";
+import { type Scene, Vector2, WebGLRenderer, type WebGLRenderTarget } from "three";
 import type { Box, Size } from "./box";
 import { Difference } from "./difference";
 import { Film } from "./film";
 import { type Cell, Looks } from "./looks";
 import type { OrbitCamera } from "./orbit_camera";
 import type { Portion } from "./pace";
+import { Slices, type Work } from "./slices";
 import type { Stage } from "./stage";
 
 const THINNEST = 0.9; // least width at which a hair is drawn [pixels]
@@ -15,11 +16,14 @@ export class Painter {
   readonly renderer: WebGLRenderer;
   readonly film: Film;
   readonly looks = new Looks();
+  readonly slices = new Slices();
   /** Whether the picture is composed for all of the canvas, as one that is kept: no panels cover it. */
   composed = false;
   /** What panels leave clear of the canvas. */
   left: Box | null = null;
   private readonly finest: number;
+  /** Pixels of the film over those of the page. */
+  private ratio: number;
   /** The second look while two are subtracted. */
   private readonly second: Film;
   private readonly difference = new Difference();
@@ -32,10 +36,10 @@ export class Painter {
     this.renderer = new WebGLRenderer({ antialias: false, powerPreference: "high-performance" });
     this.renderer.autoClear = false;
     this.renderer.outputColorSpace = "srgb-linear"; // the shaders develop on their own
-    this.finest = software ? 1 : Math.min(devicePixelRatio, 2);
+    this.finest = this.ratio = software ? 1 : Math.min(devicePixelRatio, 2);
     this.renderer.setPixelRatio(this.finest);
-    this.film = new Film(software ? 0 : 4);
-    this.second = new Film(software ? 0 : 4);
+    this.film = new Film(software ? 0 : 4, software);
+    this.second = new Film(software ? 0 : 4, software);
   }
 
   get canvas(): Size {
@@ -50,8 +54,12 @@ export class Painter {
 
   /** Draws at a fraction of the size of the canvas, to which the browser enlarges it. */
   scale(by: number): void {
-    const ratio = by * this.finest;
-    if (this.renderer.getPixelRatio() !== ratio) this.renderer.setPixelRatio(ratio);
+    this.ratio = by * this.finest;
+  }
+
+  /** Draws as many pixels as the page has, for a picture that is kept. */
+  keep(): void {
+    this.ratio = 1;
   }
 
   /** Which looks are drawn, and where. */
@@ -62,70 +70,111 @@ export class Painter {
   /** The fraction of the hairs that is about as wide as a pixel when it stands for all. */
   resolved(view: OrbitCamera): number {
     const hair = this.stage.hair.a;
-    const pixel = view.pixel(this.cells[0].clear.height * this.renderer.getPixelRatio());
+    const pixel = view.pixel(this.cells[0].clear.height * this.ratio);
     return Math.min(1, Math.max(hair.width / (THINNEST * pixel), 1 / Math.max(hair.count, 1)));
   }
 
   /** Camera, lamps, and the light in the hair of each side. */
-  prepare(view: OrbitCamera, moving: boolean): void {
-    const { renderer, stage } = this;
+  *prepare(view: OrbitCamera, moving: boolean): Work {
+    const { renderer, stage, slices } = this;
     view.camera.updateMatrixWorld();
     stage.lights.update(view.camera, view.portrait(stage.subject()));
     for (const { side } of this.cells) {
       const hair = stage.hair[side];
-      hair.update(renderer);
-      hair.light(renderer, () => [...stage.bodies.values()].filter((body) => body.solid).map((body) => body.surface(side)), moving);
+      const surfaces = () => [...stage.bodies.values()].filter((body) => body.solid).map((body) => body.surface(side));
+      yield* hair.light(renderer, surfaces, moving, slices);
     }
   }
 
   /** Adds drawings to the film and develops it. */
-  paint(view: OrbitCamera, { fraction, drawings }: Portion, moving: boolean): void {
-    const { renderer, film, looks, clear, cells } = this;
-    const buffer = renderer.getDrawingBufferSize(new Vector2());
+  *paint(view: OrbitCamera, { fraction, drawings }: Portion, moving: boolean): Work {
+    const { renderer, film, looks, clear, cells, ratio } = this;
+    const [width, height] = [this.canvas.width, this.canvas.height].map((length) => Math.floor(ratio * length));
     const pictures = looks.difference ? [cells.slice(0, 1), cells.slice(1)] : [cells];
-    if (film.width !== buffer.x || film.height !== buffer.y) film.drawings = 0;
+    if (film.width !== width || film.height !== height) film.drawings = 0;
     const begun = film.drawings;
-    const ratio = renderer.getPixelRatio();
-    const seen = { x: ratio * clear.x, y: ratio * clear.y, width: ratio * clear.width, height: ratio * clear.height };
-    pictures.forEach((some, k) => {
+    for (const [k, some] of pictures.entries()) {
       const one = k ? this.second : film;
       one.drawings = begun;
-      if (!begun) one.clear(buffer.x, buffer.y);
+      if (!begun) one.clear(width, height);
       for (let n = 0; n < drawings; n++) {
         one.open(renderer);
-        this.expose(view, some, fraction, one.drawings, moving ? 2 : 1);
-        one.expose(renderer);
+        for (const cell of some) yield* this.expose(view, one, cell, fraction, moving ? 2 : 1);
+        yield* one.expose(renderer, this.slices);
       }
-      one.show(renderer, seen, looks.difference ? this.difference.target(k, renderer) : null);
+    }
+    if (renderer.getPixelRatio() !== ratio) renderer.setPixelRatio(ratio); // empties the canvas
+    const seen = { x: ratio * clear.x, y: ratio * clear.y, width: ratio * clear.width, height: ratio * clear.height };
+    pictures.forEach((_, k) => {
+      (k ? this.second : film).show(renderer, seen, looks.difference ? this.difference.target(k, renderer) : null);
     });
     if (looks.difference) this.difference.draw(renderer);
     else this.drawOverlays(view, cells);
-    view.aim({ canvas: { x: 0, y: 0, ...this.canvas }, clear, zoom: 1 }); // what is over the picture goes by this camera
+    this.aimAtAll(view);
   }
 
-  /** Draws looks once: a part of the hairs, another one in each drawing, and the pixels moved by a part of one. */
-  private expose(view: OrbitCamera, cells: Cell[], fraction: number, number: number, stride: number): void {
-    const { renderer, stage } = this;
+  /** Draws a look once: a part of the hairs, another one in each drawing, and the pixels moved by a part of one. */
+  private *expose(view: OrbitCamera, film: Film, cell: Cell, fraction: number, stride: number): Work {
+    const { renderer, stage, slices, ratio } = this;
     const { camera } = view;
+    const number = film.drawings;
     // The sequence R2 of Roberts 2018 over a filter as wide as the path tracer's
-    const ratio = renderer.getPixelRatio();
     const [x, y] = [0.7548776662, 0.5698402909].map((step) => ((((0.5 + step * number) % 1) - 0.5) * 1.2) / ratio);
-    for (const body of stage.bodies.values()) body.seenFrom(camera.position);
-    renderer.setScissorTest(cells.length > 1);
-    for (const cell of cells) {
-      const hair = stage.hair[cell.side];
+    const hair = stage.hair[cell.side];
+    const bodies = [...stage.bodies.values()];
+    const triangles = bodies.reduce((sum, body) => sum + body.triangles, 0);
+    /** Renders into a target, or some rows of it. Others use renderer and camera between slices. */
+    const into = (target: WebGLRenderTarget, scenes: Scene[], first = 0, count = target.height) => {
       view.aim(cell, x, y);
-      this.window(cell);
-      for (const body of stage.bodies.values()) body.turnTo(cell.side);
-      hair.setDetail(fraction, stride, Math.round(number * fraction * hair.count) % Math.max(hair.count, 1));
-      hair.seenFrom(camera.position);
-      renderer.render(stage.scene, camera);
-      if (hair.table && stage.hairShown) {
-        renderer.render(hair.firstScene, camera);
-        renderer.render(hair.scene, camera);
+      for (const body of bodies) {
+        body.seenFrom(camera.position);
+        body.turnTo(cell.side);
       }
+      hair.seenFrom(camera.position);
+      this.restrict(target, cell, first, count);
+      renderer.setRenderTarget(target);
+      for (const scene of scenes) renderer.render(scene, camera);
+      renderer.setRenderTarget(null);
+      this.aimAtAll(view);
+    };
+    yield* slices.draw("bodies", triangles, (first, count) => {
+      let before = 0;
+      for (const body of bodies) {
+        const [from, to] = [first - before, first + count - before].map((at) => Math.min(Math.max(at, 0), body.triangles));
+        body.turnTo(cell.side);
+        body.restrict(from, to - from);
+        before += body.triangles;
+      }
+      into(film.drawing, [stage.scene]);
+      for (const body of bodies) body.restrict();
+    });
+    if (!hair.table || !stage.hairShown) return;
+    yield* hair.update(renderer, fraction, number + 1, slices);
+    const { seen } = film;
+    if (!seen) {
+      yield* hair.draw(fraction, stride, number, slices, () => into(film.drawing, [hair.firstScene, hair.scene]));
+      return;
     }
-    this.wholeWindow();
+    yield* hair.draw(fraction, stride, number, slices, () => into(seen, [hair.firstScene]));
+    hair.seen = seen.texture;
+    yield* slices.draw("shading", film.height, (first, count) => into(film.drawing, [hair.scene], first, count));
+  }
+
+  /** What is over the picture goes by this camera. */
+  private aimAtAll(view: OrbitCamera): void {
+    view.aim({ canvas: { x: 0, y: 0, ...this.canvas }, clear: this.clear, zoom: 1 });
+  }
+
+  /** Restricts a target of the film to the part that a cell fills, and there to some rows. */
+  private restrict(target: WebGLRenderTarget, { box, canvas }: Cell, first: number, count: number): void {
+    const { height } = this.canvas;
+    const scaled = ({ x, y, width, height: rows }: Box) =>
+      [x, height - y - rows, width, rows].map((length) => Math.round(this.ratio * length));
+    target.viewport.fromArray(scaled(canvas));
+    const [left, bottom, width, rows] = scaled(box);
+    const from = Math.max(bottom, first);
+    target.scissor.set(left, from, width, Math.max(0, Math.min(bottom + rows, first + count) - from));
+    target.scissorTest = true;
   }
 
   private drawOverlays(view: OrbitCamera, cells: Cell[]): void {

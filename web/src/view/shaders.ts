@@ -58,23 +58,31 @@ vec3 toneOf(int hair, float along) {
 }
 `;
 
-/** Ribbons that face the eye: two vertices a point, an instance a hair. Gives `place`, `tangent` and `along`. */
-export const RIBBON = /* glsl */ `
+/** The points of hairs, of which each `stride`th is drawn. */
+export const POINTS = /* glsl */ `
 uniform highp sampler2D hairPoints; // position and width, point by point
 uniform int points, stride;
+uniform mat4 viewMatrix, projectionMatrix;
+vec4 hairAt(int hair, int k) { return lookup(hairPoints, hair * points + clamp(k, 0, points - 1)); }
+vec3 tangentAt(int hair, int k) {
+  return normalize(hairAt(hair, k + stride).xyz - hairAt(hair, k - stride).xyz + vec3(0.0, 1e-9, 0.0));
+}
+`;
+
+/** Ribbons that face the eye: two vertices a point, an instance a hair. Gives `place`, `tangent` and `along`. */
+export const RIBBON = /* glsl */ `
+${POINTS}
 uniform int hairs, firstHair;       // of all; the first one of this drawing
 uniform float thicken;              // factor on widths, for the hairs that are left out
-uniform mat4 viewMatrix, projectionMatrix;
 uniform vec3 eye;
 
 int hairNumber() { return (gl_InstanceID + firstHair) % hairs; }
-vec4 hairAt(int hair, int k) { return lookup(hairPoints, hair * points + clamp(k, 0, points - 1)); }
+int pointNumber() { return min((gl_VertexID >> 1) * stride, points - 1); }
 
 void ribbon(out vec3 place, out vec3 tangent, out float along) {
-  int hair = hairNumber(), k = min((gl_VertexID >> 1) * stride, points - 1);
+  int hair = hairNumber(), k = pointNumber();
   vec4 here = hairAt(hair, k);
-  vec3 edge = hairAt(hair, k + stride).xyz - hairAt(hair, k - stride).xyz;
-  tangent = normalize(edge + vec3(0.0, 1e-9, 0.0));
+  tangent = tangentAt(hair, k);
   vec3 side = normalize(cross(tangent, eye - here.xyz) + vec3(1e-9, 0.0, 0.0));
   place = here.xyz + side * here.w * thicken * (float(gl_VertexID & 1) - 0.5);
   along = float(k) / float(points - 1);

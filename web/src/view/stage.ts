@@ -23,9 +23,12 @@ export class Stage {
   /** Whether the hair is shown; its guides are seen without it. */
   hairShown = true;
 
-  /** changed: hears that the picture is another */
-  constructor(private readonly changed: () => void) {
-    const hair = () => new Hair(this.lights);
+  /** changed: hears that the picture is another; deferred: see `Hair` */
+  constructor(
+    private readonly changed: () => void,
+    deferred: boolean,
+  ) {
+    const hair = () => new Hair(this.lights, deferred);
     this.hair = { a: hair(), b: hair(), c: hair(), d: hair() };
   }
 

@@ -8,8 +8,9 @@ import type { Film } from "./film";
 import type { Hair } from "./hair";
 import type { Looks, Side } from "./looks";
 import { OrbitCamera } from "./orbit_camera";
-import { Clock, Pace } from "./pace";
+import { ALL_AT_ONCE, Clock, Pace, type Portion } from "./pace";
 import { Painter } from "./painter";
+import { complete, type Work } from "./slices";
 import { Stage } from "./stage";
 
 const REST_AFTER = 180; // time without a movement after which the picture rests [ms]
@@ -25,13 +26,19 @@ export interface DrawStatistics {
   shown: number;
 }
 
+/** A picture that is done, and the number of its hairs. */
+interface Drawn {
+  portion: Portion;
+  shown: number;
+}
+
 export class Viewer {
-  readonly stage = new Stage(() => this.invalidate());
+  readonly stage: Stage;
   readonly painter: Painter;
   readonly view: OrbitCamera;
-  readonly hair: Record<Side, Hair> = this.stage.hair;
-  readonly guides = this.stage.guides;
-  readonly painted = this.stage.painted;
+  readonly hair: Record<Side, Hair>;
+  readonly guides: Stage["guides"];
+  readonly painted: Stage["painted"];
   readonly renderer: WebGLRenderer;
   readonly camera: PerspectiveCamera;
   readonly controls: OrbitControls;
@@ -49,8 +56,12 @@ export class Viewer {
   private placed = false;
   private wanted = false;
   private moved = 0;
-  /** Whether the graphics card is at work on a picture: the next one waits for it. */
+  /** Whether the graphics card is at work: what is next waits for it. */
   private drawing = false;
+  /** The rest of a picture that is drawn in slices. */
+  private rest: Work<Drawn> | null = null;
+  /** Time that its drawing has taken [ms]. */
+  private spent = 0;
   /** Drawings that the picture at rest still lacks; what changes begins it again. */
   private lacking = 0;
   private resting = 0;
@@ -60,6 +71,10 @@ export class Viewer {
   constructor(readonly element: HTMLElement) {
     const software = drawsInSoftware();
     this.pace = new Pace(software);
+    this.stage = new Stage(() => this.invalidate(), software);
+    this.hair = this.stage.hair;
+    this.guides = this.stage.guides;
+    this.painted = this.stage.painted;
     this.painter = new Painter(this.stage, software);
     this.renderer = this.painter.renderer;
     this.looks = this.painter.looks;
@@ -73,7 +88,7 @@ export class Viewer {
     this.camera = this.view.camera;
     this.controls = this.view.controls;
     this.controls.addEventListener("change", () => this.move());
-    this.clock = new Clock(this.renderer.getContext() as WebGL2RenderingContext);
+    this.clock = new Clock(this.renderer.getContext() as WebGL2RenderingContext, software);
     new ResizeObserver(() => this.resize()).observe(element);
     this.resize();
   }
@@ -193,7 +208,10 @@ export class Viewer {
     this.invalidate();
   }
 
+  /** The picture is another. What it cuts short at rest is first shown as what moves is: at once. */
   invalidate(): void {
+    if (this.rest) this.moved = performance.now();
+    this.rest = null;
     this.film.drawings = 0;
     this.lacking = 1;
     this.request();
@@ -238,10 +256,12 @@ export class Viewer {
   private drawWhole(): void {
     const { painter, view, pace } = this;
     this.moved = 0;
-    pace.resolved = painter.resolved(view);
-    painter.prepare(view, false);
+    this.rest = null;
+    Object.assign(painter.slices, ALL_AT_ONCE);
+    [pace.resolved, pace.hairs] = [painter.resolved(view), Math.max(this.hair.a.count, 1)];
+    complete(painter.prepare(view, false));
     this.film.drawings = 0;
-    painter.paint(view, { fraction: pace.resolved, drawings: pace.needed(pace.resolved) }, false);
+    complete(painter.paint(view, { fraction: pace.resolved, drawings: pace.needed(pace.resolved) }, false));
     this.lacking = 0;
     this.onDraw({ shown: this.hair.a.count });
   }
@@ -252,6 +272,7 @@ export class Viewer {
     const ratio = renderer.getPixelRatio();
     renderer.setPixelRatio(1);
     renderer.setSize(width, height, false);
+    painter.keep();
     const { composed } = painter;
     painter.composed = true;
     this.drawWhole();
@@ -295,14 +316,9 @@ export class Viewer {
     const moving = now - this.moved < REST_AFTER;
     if (moving) this.film.drawings = 0;
     painter.scale(moving && !this.turntable && !painter.composed ? pace.scale : 1); // movies have their full size
-    pace.resolved = painter.resolved(view);
-    painter.prepare(view, moving);
-    const portion = pace.next(moving);
-    this.clock.begin();
-    painter.paint(view, portion, moving);
-    const shown = Math.round(this.hair.a.count * Math.min(1, portion.fraction * this.film.drawings));
-    this.lacking = moving ? 1 : Math.max(0, pace.needed(portion.fraction) - this.film.drawings);
-    this.onPaint();
+    [pace.resolved, pace.hairs] = [painter.resolved(view), Math.max(this.hair.a.count, 1)];
+    Object.assign(painter.slices, pace.slice(moving));
+    this.spent = 0;
     if (moving) {
       clearTimeout(this.resting);
       this.resting = window.setTimeout(() => {
@@ -310,12 +326,38 @@ export class Viewer {
         this.invalidate();
       }, REST_AFTER + 20);
     }
+    this.advance(this.picture(moving), moving, 0);
+  }
+
+  private *picture(moving: boolean): Work<Drawn> {
+    const { painter, view, pace } = this;
+    yield* painter.prepare(view, moving);
+    this.spent = 0;
+    const portion = pace.next(moving);
+    yield* painter.paint(view, portion, moving);
+    this.lacking = moving ? 1 : Math.max(0, pace.needed(portion.fraction) - this.film.drawings);
     this.drawn++;
+    this.onPaint();
+    return { portion, shown: Math.round(this.hair.a.count * Math.min(1, portion.fraction * this.film.drawings)) };
+  }
+
+  /** Goes on with a picture. One of what moves is not cut: the camera is elsewhere in the next. took: the last slice [ms] */
+  private advance(picture: Work<Drawn>, moving: boolean, took: number): void {
+    const { clock, pace } = this;
+    clock.begin();
+    const step = moving ? { done: true as const, value: complete(picture) } : picture.next(took);
+    this.rest = step.done ? null : picture;
     this.drawing = true;
-    this.clock.end((took) => {
+    clock.end((ms) => {
       this.drawing = false;
-      pace.took(took, portion, moving);
-      this.onDraw({ drawMs: took, shown });
+      this.spent += ms;
+      if (step.done) {
+        pace.took(this.spent, step.value.portion, moving);
+        this.onDraw({ drawMs: this.spent, shown: step.value.shown });
+      } else if (this.rest === picture) {
+        this.advance(picture, moving, ms);
+        return;
+      }
       if (this.wanted) requestAnimationFrame(() => this.draw());
       else if (this.turntable) this.invalidate();
       else if (!moving && this.lacking) this.request();
@@ -326,9 +368,11 @@ export class Viewer {
     const { painter, view, pace, size } = this;
     if (!size.width || !size.height) return;
     this.renderer.setSize(size.width, size.height);
-    pace.resolved = painter.resolved(view);
-    painter.prepare(view, true);
-    painter.paint(view, pace.next(true), true); // before the browser shows the emptied canvas
+    painter.scale(pace.scale);
+    [pace.resolved, pace.hairs] = [painter.resolved(view), Math.max(this.hair.a.count, 1)];
+    Object.assign(painter.slices, ALL_AT_ONCE);
+    complete(painter.prepare(view, true));
+    complete(painter.paint(view, pace.next(true), true)); // before the browser shows the emptied canvas
     this.invalidate();
   }
 }

@@ -90,11 +90,12 @@ export interface Matter {
 }
 
 /** Fills the voxels under surfaces: a shell one voxel below them, so that what lies on them is outside of it. */
-export function shell(grid: Grid, surfaces: Iterable<Surface>): Pick<Matter, "skin" | "albedo"> {
+export function* shell(grid: Grid, surfaces: Iterable<Surface>): Generator<void, Pick<Matter, "skin" | "albedo">> {
   const skin = new Float32Array(grid.voxels);
   const albedo = new Float32Array(3 * grid.voxels);
   for (const { points, normals, colors, triangles } of surfaces)
     for (let t = 0; t < triangles.length; t += 3) {
+      if (t % 1500 === 0) yield;
       const corners = [triangles[t], triangles[t + 1], triangles[t + 2]];
       let longest = 0;
       for (let c = 0; c < 3; c++) {
@@ -139,33 +140,31 @@ export class LightVolume {
 
   fill(matter: Matter): void {
     const { grid } = matter;
-    if (this.matter?.grid.voxels !== grid.voxels || !same(this.matter.grid.counts, grid.counts)) {
+    if (!this.matter || !same(this.matter.grid.counts, grid.counts)) {
       this.depth = four(grid.voxels);
       this.passed = four(grid.voxels);
       this.coarse = new Coarse(grid);
-      this.dispose();
-      const { gridDepth, gridPassed, gridField, gridFlux } = this.uniforms;
-      gridDepth.value = texture(grid.counts);
-      gridPassed.value = texture(grid.counts);
-      gridField.value = texture(this.coarse.counts);
-      gridFlux.value = texture(this.coarse.counts);
     }
     this.matter = matter;
-    this.uniforms.gridOrigin.value.copy(grid.origin);
-    this.uniforms.gridSize.value.set(...grid.counts).multiplyScalar(grid.size);
     this.coarse?.reset();
   }
 
-  /** Lights the grid. */
-  light(beams: Beam[], ambient: Vector3, transport: Transport): void {
+  /** Lights the grid in small steps, with the last of which it is seen. */
+  *light(beams: Beam[], ambient: Vector3, transport: Transport): Generator<void, void> {
     const { matter, depth, passed, coarse } = this;
     if (!matter || !depth || !passed || !coarse) return;
-    beams.forEach((beam, k) => cast(matter, beam, depth[k], passed[k]));
-    coarse.light(matter, beams, depth, passed, ambient, transport);
-    pack(this.uniforms.gridDepth.value, depth);
-    pack(this.uniforms.gridPassed.value, passed);
-    pack(this.uniforms.gridField.value, coarse.mean);
-    pack(this.uniforms.gridFlux.value, coarse.flow);
+    for (const [k, beam] of beams.entries()) yield* cast(matter, beam, depth[k], passed[k]);
+    yield* coarse.light(matter, beams, depth, passed, ambient, transport);
+    const fine = matter.grid.counts;
+    const packed: Uint16Array[] = [];
+    for (const values of [depth, passed, coarse.mean, coarse.flow]) {
+      packed.push(pack(values));
+      yield;
+    }
+    const { gridOrigin, gridSize, gridDepth, gridPassed, gridField, gridFlux } = this.uniforms;
+    [gridDepth, gridPassed, gridField, gridFlux].forEach((one, k) => fillTexture(one, k < 2 ? fine : coarse.counts, packed[k]));
+    gridOrigin.value.copy(matter.grid.origin);
+    gridSize.value.set(...fine).multiplyScalar(matter.grid.size);
   }
 
   dispose(): void {
@@ -186,11 +185,14 @@ function pointsOf({ from, place, radius }: Beam): Vector3[] {
 }
 
 /** Optical depth of hair and passage of skin towards a lamp, by the mean of what passes from its points. */
-function cast(matter: Matter, beam: Beam, depth: Float32Array, passed: Float32Array): void {
+function* cast(matter: Matter, beam: Beam, depth: Float32Array, passed: Float32Array): Generator<void, void> {
   depth.fill(0);
   passed.fill(0);
   if (beam.strength.lengthSq() === 0) return;
-  for (const point of pointsOf(beam)) sweep(matter, point, depth, passed);
+  for (const point of pointsOf(beam)) {
+    sweep(matter, point, depth, passed);
+    yield;
+  }
   for (let i = 0; i < depth.length; i++) {
     depth[i] = depth[i] >= LAMP_POINTS ? 0 : -Math.log(Math.max(depth[i] / LAMP_POINTS, DARKEST));
     passed[i] /= LAMP_POINTS;
@@ -283,12 +285,22 @@ class Coarse {
     this.fresh = true;
   }
 
-  light(matter: Matter, beams: Beam[], depth: Four, passed: Four, ambient: Vector3, transport: Transport): void {
-    this.gather(matter, beams, depth, passed, transport);
+  *light(
+    matter: Matter,
+    beams: Beam[],
+    depth: Four,
+    passed: Four,
+    ambient: Vector3,
+    transport: Transport,
+  ): Generator<void, void> {
+    yield* this.gather(matter, beams, depth, passed, transport);
     const sky = ambient.toArray();
     for (let c = 0; c < 3; c++) {
       if (this.fresh) for (const values of [this.mean[c], ...this.flux[c]]) values.fill(0);
-      for (let i = 0; i < (this.fresh ? SWEEPS : SWEEPS_MORE); i++) this.transport(c, sky[c]);
+      for (let i = 0; i < (this.fresh ? SWEEPS : SWEEPS_MORE); i++) {
+        this.transport(c, sky[c]);
+        yield;
+      }
     }
     this.fresh = false;
     for (let i = 0; i < this.mean[3].length; i++) {
@@ -299,7 +311,13 @@ class Coarse {
   }
 
   /** Matter and beams of the voxels, from the eight of the grid in each. */
-  private gather({ grid, hair, tone, along, skin, albedo }: Matter, beams: Beam[], depth: Four, passed: Four, t: Transport): void {
+  private *gather(
+    { grid, hair, tone, along, skin, albedo }: Matter,
+    beams: Beam[],
+    depth: Four,
+    passed: Four,
+    t: Transport,
+  ): Generator<void, void> {
     const [nx, ny] = grid.counts;
     const [cx, cy, cz] = this.counts;
     const strength = beams.map((beam) => beam.strength.toArray());
@@ -308,6 +326,7 @@ class Coarse {
     for (let k = 0, to = 0; k < cz; k++)
       for (let j = 0; j < cy; j++)
         for (let i = 0; i < cx; i++, to++) {
+          if (i + j === 0) yield;
           let [sigma, solid] = [0, 0];
           const [q, bare, mean] = [[0, 0, 0], [0, 0, 0], [0, 0, 0]];
           const arriving = [0, 0, 0, 0];
@@ -437,13 +456,24 @@ function open(): Data3DTexture {
   return made;
 }
 
-function pack(into: Data3DTexture, values: Four): void {
-  const data = into.image.data as unknown as Uint16Array;
+function pack(values: Four): Uint16Array {
+  const data = new Uint16Array(4 * values[0].length);
   for (let c = 0; c < 4; c++) {
     const from = values[c];
     for (let i = 0; i < from.length; i++) data[4 * i + c] = DataUtils.toHalfFloat(from[i]);
   }
-  into.needsUpdate = true;
+  return data;
+}
+
+/** Gives a texture other values; the memory on the card is kept where they are as many. */
+function fillTexture(uniform: { value: Data3DTexture }, counts: [number, number, number], values: Uint16Array): void {
+  const { width, height, depth } = uniform.value.image;
+  if (!same([width, height, depth], counts)) {
+    uniform.value.dispose();
+    uniform.value = texture(counts);
+  }
+  (uniform.value.image.data as unknown as Uint16Array).set(values);
+  uniform.value.needsUpdate = true;
 }
 
 /** Looks the grid up. */
