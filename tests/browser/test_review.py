@@ -222,6 +222,27 @@ def test_guides_are_sculpted_with_a_brush(opened: Any):
     assert not review.errors
 
 
+def test_the_plane_of_symmetry_is_seen_while_a_brush_works_on_both_sides(opened: Any):
+    review: Review = opened(viewport={"width": 800, "height": 500})
+    review.page.get_by_role("button", name="Sculpt guides").click()
+    review.until("ringlet.viewer.guides.shown")
+    both = review.page.get_by_role("switch", name="both sides")
+    review.get("(ringlet.viewer.showHair(false), ringlet.viewer.frame(60, 10))")  # from one side
+    pictures = []
+    for on in (False, True, False):
+        both.set_checked(on)
+        assert review.get("ringlet.viewer.guides.plane.visible") == on
+        pictures.append(review.picture())
+    without, shown, again = pictures
+    # The corners stand out from the groom: four lines of over 100 pixels, of which the head covers none
+    blue = (shown[:, :, 2] > shown[:, :, 0] + 60) & (np.abs(shown - without).max(axis=2) > 40)
+    assert blue.sum() > 100
+    assert different(without, again) == 0
+    both.check()
+    review.page.keyboard.press("b")  # the brush is put away, and the plane with it
+    assert not review.get("ringlet.viewer.guides.plane.visible")
+
+
 def test_a_value_is_set_for_one_lock_and_reverted(opened: Any):
     review: Review = opened()
     before = np.array(review.get("Array.from(ringlet.viewer.hair.a.locks.points)")).reshape(8, -1)
