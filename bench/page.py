@@ -63,7 +63,39 @@ ORBIT = """
   turn();
 })
 """
+# Presses a key while a picture at rest is drawn: times until the next picture begins and until it is done, and slices.
+CANCEL = """
+(times) => new Promise((done) => {
+  const { viewer } = ringlet, { clock } = viewer, begin = clock.begin, { draw, onDraw } = viewer;
+  const waits = [], pictures = [], slices = [];
+  let pressed = 0, slice = 0, resting = false;
+  clock.begin = () => {
+    if (resting && viewer.rest) slices.push(performance.now() - slice);
+    [slice, resting] = [performance.now(), Boolean(viewer.rest)];
+    begin.call(clock);
+  };
+  const press = () => {
+    if (!viewer.rest || viewer.resting) return setTimeout(press, 50);
+    pressed = performance.now();
+    viewer.renderer.domElement.dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowLeft", bubbles: true }));
+  };
+  viewer.draw = () => {
+    if (pressed && waits.length === pictures.length) waits.push(performance.now() - pressed);
+    draw.call(viewer);
+  };
+  viewer.onDraw = (statistics) => {
+    onDraw(statistics);
+    if (!pressed || waits.length === pictures.length) return;
+    pictures.push(performance.now() - pressed);
+    pressed = 0;
+    if (pictures.length === times) done([waits, pictures, slices]);
+    else setTimeout(press, 1500 + 137 * pictures.length);
+  };
+  press();
+})
+"""
 FEWEST = 15  # pictures of an orbit
+CANCELLED = 12  # pictures at rest
 RENDERER = """
 (() => {
   const gl = ringlet.viewer.renderer.getContext();
@@ -94,6 +126,12 @@ def run(
     picture:  from the begin of a drawing until the graphics card reports it as done
     script:   the page's own share of that, also the least, and the most: with light that is computed again
     server:   processor time of the server in the same time
+
+    Of a picture at rest that a key cuts short:
+
+    begin:    from the key to the begin of the next picture, also the most
+    picture:  from the key until that picture is done
+    slice:    a slice of a picture at rest, the median and the most
     """
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
@@ -134,11 +172,20 @@ def run(
                 "server_ms": (processor_ms(server) - before) / pictures,
                 "hairs_drawn": statistics.median([shown for _, shown in drawn]),
             }
+            waits, shown, slices = review.page.evaluate(CANCEL, CANCELLED)
+            cancel = {
+                "begin_ms": statistics.median(waits),
+                "most_begin_ms": max(waits),
+                "picture_ms": statistics.median(shown),
+                "slice_ms": statistics.median(slices),
+                "most_slice_ms": max(slices),
+                "slices": len(slices),
+            }
         finally:
             server.kill()
     params = {"locks": locks, "per_lock": per_lock, "points": points, "steps": steps}
     params |= {"orbit_locks": orbit_locks, "seconds": seconds}
-    return {"name": "page", "params": params, "renderer": renderer, **times, "orbit": orbit}
+    return {"name": "page", "params": params, "renderer": renderer, **times, "orbit": orbit, "cancel": cancel}
 
 
 def drag(review: Review, steps: int) -> dict[str, dict[str, float]]:
