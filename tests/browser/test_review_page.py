@@ -70,7 +70,7 @@ def test_pictures_and_movies_are_saved(opened: Any):
         assert saved.size == ((2048, 2048) if clear else (1000, 640))
         alpha = np.asarray(saved.convert("RGBA"))[:, :, 3]
         assert (alpha[0, 0] < 10 and alpha[1000, 1000] > 245) if clear else alpha.min() == 255
-    assert review.get("ringlet.viewer.renderer.domElement.width") == 1000
+    review.until("ringlet.viewer.renderer.domElement.width === 1000")  # that of the page again, once the picture rests
     film = review.page.get_by_label("Record a movie")
     film.click()
     for turn in (0.3, 0.6):
