@@ -240,3 +240,27 @@ def test_a_render_is_shown_in_place_wiped_saved_and_ended_by_a_move(opened: Any,
     review.get("ringlet.viewer.key('ArrowLeft')")
     assert not picture.is_visible() and review.get("ringlet.render.picture") is None
     assert not review.errors
+
+
+def test_hairs_that_move_between_two_slices_are_all_brought_to_their_places(opened: Any, folder: Path):
+    recipe = folder / "small.recipe.toml"
+    recipe.write_text(recipe.read_text().replace("per_lock = 3", "per_lock = 400"))
+    review: Review = opened()
+    review.settled()
+    stale, slices = review.get(
+        """(() => {
+          const { renderer, painter: { slices }, hair: { a: hair } } = ringlet.viewer, { carry, locks } = hair;
+          Object.assign(slices, { drawing: 30 });
+          carry.begin();
+          const work = carry.update(renderer, hair.count, slices);
+          let taken = 1;
+          work.next(0);
+          hair.setLocks({ ...locks, points: locks.points.map((value) => value + 0.5) });
+          while (!work.next(0).done) taken++;
+          const points = Array.from(hair.read(renderer, hair.count));
+          carry.begin();
+          const fresh = Array.from(hair.read(renderer, hair.count));
+          return [points.filter((value, k) => value !== fresh[k]).length, taken];
+        })()"""
+    )
+    assert slices > 2 and stale == 0 and not review.errors

@@ -234,19 +234,20 @@ export class Carry {
     this.carried = 0;
   }
 
-  /** Brings hairs to their places, up to a number of them; those that are there stay. */
+  /** Brings hairs to their places, up to a number of them; those that are there stay. Begins again where they move meanwhile. */
   *update(renderer: WebGLRenderer, hairs: number, slices: Slices): Work {
-    const done = this.carried;
     const rows = Math.min(this.target.height, Math.ceil((hairs * this.hairs.points) / WIDTH));
-    yield* slices.draw("carry", rows - done, (first, count) => {
-      this.target.scissorTest = true;
-      this.target.scissor.set(0, done + first, WIDTH, count);
-      const before = renderer.getRenderTarget();
-      renderer.setRenderTarget(this.target);
-      renderer.render(this.scene, this.camera);
-      renderer.setRenderTarget(before);
-      this.carried = done + first + count;
-    });
+    for (let done = this.carried; done < rows; done = this.carried)
+      yield* slices.draw("carry", rows - done, (first, count) => {
+        if (this.carried !== done + first) return;
+        this.target.scissorTest = true;
+        this.target.scissor.set(0, done + first, WIDTH, count);
+        const before = renderer.getRenderTarget();
+        renderer.setRenderTarget(this.target);
+        renderer.render(this.scene, this.camera);
+        renderer.setRenderTarget(before);
+        this.carried = done + first + count;
+      });
   }
 
   /** The points of the first hairs, as they are on the card: four numbers a point. */
