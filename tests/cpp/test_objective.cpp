@@ -21,9 +21,9 @@ SpringScene crossing_bars(double friction = 0.3) {
     return scene;
 }
 
-void find_contacts(SpringScene &scene) {
+void find_contacts(SpringScene &scene, double damping = 0.0) {
     const std::vector<Vec3> &now = scene.configuration->positions;
-    scene.objective->find_contacts(scene.touching(), now, now);
+    scene.objective->find_contacts(scene.touching(), now, now, damping);
 }
 
 // Begins a step; the path along its first Newton direction.
@@ -146,6 +146,55 @@ BOOST_AUTO_TEST_CASE(the_couplings_are_the_off_diagonal_part_of_the_hessian) {
     for (int k = 0; k < couplings.count(); ++k)
         BOOST_TEST((couplings.product(k) - expected.segment<3>(3 * couplings.vertex(k))).norm() < 1e-10 * expected.norm());
     BOOST_TEST(curvature[0] == p.dot(expected), boost::test_tools::tolerance(1e-10));
+}
+
+BOOST_AUTO_TEST_CASE(damping_resists_relative_motion_and_changes_neither_forces_nor_joint_motion) {
+    SpringScene scene = crossing_bars(0.0);
+    scene.begin(0.01);
+    const AlignedVector x = scene.unknowns();
+    const auto assembled = [&](double damping) {
+        find_contacts(scene, damping);
+        scene.objective->linearise_contacts(x);
+        for (int b = 0; b < 4; ++b) scene.objective->assemble(b, x);
+        Eigen::VectorXd gradient(24);
+        for (int i = 0; i < 24; ++i) gradient[i] = (*scene.blocks)[i / 6].gradient()[i % 6];
+        return std::pair{dense(*scene.objective), gradient};
+    };
+    const auto [plain, force] = assembled(0.0);
+    const auto [damped, same_force] = assembled(0.03);
+    BOOST_TEST((force - same_force).norm() == 0.0);
+    const Eigen::MatrixXd added = damped - plain;
+    Eigen::VectorXd joint(24), alone = Eigen::VectorXd::Zero(24);
+    for (int i = 0; i < 24; ++i) joint[i] = i % 3 == 1 ? 1.0 : 0.0;
+    alone[0] = alone[3] = 1.0; // one bar alone
+    BOOST_TEST((added * joint).norm() < 1e-12 * added.norm());
+    double expected = 0.0;
+    for (const Contact &contact : scene.objective->contacts.contacts()) {
+        BOOST_TEST(contact.damping == 0.03 * contact.stiffness);
+        if (scene.table.object_of(contact.vertex[0]) == 0) expected += contact.damping;
+    }
+    BOOST_TEST(alone.dot(added * alone) == expected, boost::test_tools::tolerance(1e-9));
+}
+
+BOOST_AUTO_TEST_CASE(damped_pairs_are_contacts_beyond_their_own_activation_distance_and_do_not_push) {
+    SpringScene scene = crossing_bars();
+    scene.begin(0.01);
+    ContactSet &contacts = scene.objective->contacts;
+    const std::vector<Vec3> now = scene.configuration->positions;
+    contacts.begin(scene.table.mesh, scene.table.material, scene.touching(), {}, now); // each activates at its initial gap
+    find_contacts(scene);
+    BOOST_TEST(contacts.contacts().empty());
+    find_contacts(scene, 0.03);
+    BOOST_REQUIRE(contacts.contacts().size() == 2u);
+    for (const Contact &contact : contacts.contacts()) {
+        BOOST_TEST(contact.force == 0.0);
+        BOOST_TEST(contact.damping > 0.0);
+    }
+    scene.system->assemble(scene.unknowns(), {});
+    AlignedVector together(scene.blocks->size());
+    for (size_t i = 0; i < together.size(); ++i) together[i] = i % 3 == 2 && i < 6 ? 1e-3 : 0.0; // one bar into another
+    scene.objective->lag_normal_forces(together);
+    for (const LaggedForce &lagged : contacts.lagged_forces()) BOOST_TEST(lagged.force == 0.0);
 }
 
 BOOST_AUTO_TEST_CASE(banded_refuses_what_contacts_couple) {

@@ -29,6 +29,7 @@ struct Contact {
     double force = 0.0;           // normal force there [N]
     double lagged_force = 0.0;    // N [N]
     uint64_t pair = 0;            // name of the pair of primitives, and of the place on it
+    double damping = 0.0;         // of relative motion, in the search direction alone [N/m]
     double tied_length = -1.0;    // of a tie: see tie.h [m]; negative of a contact
 
     bool edge_edge() const { return first == 2; }

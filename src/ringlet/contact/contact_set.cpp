@@ -102,10 +102,11 @@ void ContactSet::commit_friction(View<Vec3> positions) {
     }
 }
 
-// Calls work(point, gap, activation distance, barrier end, loaded fraction) for the points of a pair that push.
+// Calls work(point, gap, activation distance, barrier end, loaded fraction) for the points of a pair; beyond the activation
+// distance a point does not push.
 template <class Work>
-void ContactSet::for_active_points(const CollisionMesh &mesh, const ContactPair &pair, View<Vec3> positions,
-                                   const Work &work) const {
+void ContactSet::for_points_of(const CollisionMesh &mesh, const ContactPair &pair, View<Vec3> positions,
+                               const Work &work) const {
     const double least_depth = contact_settings::least_loaded_depth * pair.d_hat;
     double d_hat = pair.d_hat, most = pair.d_hat; // the largest force that it takes up, per stiffness [m]
     if (const InitialOverlap *overlap = overlaps.find(pair)) {
@@ -116,26 +117,28 @@ void ContactSet::for_active_points(const CollisionMesh &mesh, const ContactPair 
     const double loaded_fraction = most / pair.d_hat;
     for_contact_points(mesh, pair, positions, [&](const ContactPoint &point) {
         const double gap = std::sqrt(point.closest.distance2);
-        if (!(gap > 0.0 && gap < d_hat)) return;
-        work(point, gap, d_hat, d_hat / contact_settings::d_hat_per_barrier_end, loaded_fraction);
+        if (gap > 0.0) work(point, gap, d_hat, d_hat / contact_settings::d_hat_per_barrier_end, loaded_fraction);
     });
 }
 
 std::vector<Contact> ContactSet::linearise(const CollisionMesh &mesh, const ContactMaterial &material,
-                                           const std::vector<ContactPair> &pairs, View<Vec3> start,
-                                           View<Vec3> positions) const {
+                                           const std::vector<ContactPair> &pairs, View<Vec3> start, View<Vec3> positions,
+                                           double damping) const {
     std::vector<Contact> found = collect<Contact>(int(pairs.size()), [&](int k, std::vector<Contact> &contacts) {
-        for_active_points(mesh, pairs[k], positions,
-                          [&](const ContactPoint &point, double gap, double d_hat, double barrier_end, double loaded) {
-                              Contact contact = contact_at(mesh, material, pairs[k], point, positions);
-                              contact.d_hat = d_hat;
-                              contact.barrier_end = barrier_end;
-                              contact.loaded_fraction = loaded;
-                              contact.reference = separation(contact, start);
-                              contact.gap = gap;
-                              contact.force = normal_force(contact, separation(contact, positions));
-                              contacts.push_back(contact);
-                          });
+        for_points_of(mesh, pairs[k], positions,
+                      [&](const ContactPoint &point, double gap, double d_hat, double barrier_end, double loaded) {
+                          Contact contact = contact_at(mesh, material, pairs[k], point, positions);
+                          if (mesh.moves[contact.vertex[0]] && mesh.moves[contact.vertex[3]])
+                              contact.damping = damping * contact.stiffness;
+                          if (gap >= d_hat && contact.damping == 0.0) return;
+                          contact.d_hat = d_hat;
+                          contact.barrier_end = barrier_end;
+                          contact.loaded_fraction = loaded;
+                          contact.reference = separation(contact, start);
+                          contact.gap = gap;
+                          contact.force = normal_force(contact, separation(contact, positions));
+                          contacts.push_back(contact);
+                      });
     });
     for_known(friction_, found, [](const FrictionState &before, Contact &now) { now.reference -= before.slip; });
     if (guess_.empty()) return found;
@@ -149,24 +152,27 @@ std::vector<PairEnergy> ContactSet::energies(const CollisionMesh &mesh, const Co
                                              const std::vector<ContactPair> &pairs, View<Vec3> positions) const {
     std::vector<PairEnergy> found = collect<PairEnergy>(int(pairs.size()), [&](int k, std::vector<PairEnergy> &energies) {
         const ContactPair &pair = pairs[k];
-        for_active_points(mesh, pair, positions,
-                          [&](const ContactPoint &point, double gap, double d_hat, double barrier_end, double) {
-                              const Stencil at = stencil(mesh, pair, point.closest);
-                              energies.push_back({contact_name(pair, point.number),
-                                                  {mesh.object[at.vertex[0]], mesh.object[at.vertex[3]]},
-                                                  point.share * pair_stiffness(at, material),
-                                                  barrier(gap, d_hat, barrier_end).value});
-                          });
+        for_points_of(mesh, pair, positions,
+                      [&](const ContactPoint &point, double gap, double d_hat, double barrier_end, double) {
+                          if (gap >= d_hat) return;
+                          const Stencil at = stencil(mesh, pair, point.closest);
+                          energies.push_back({contact_name(pair, point.number),
+                                              {mesh.object[at.vertex[0]], mesh.object[at.vertex[3]]},
+                                              point.share * pair_stiffness(at, material),
+                                              barrier(gap, d_hat, barrier_end).value});
+                      });
     });
     for_known(contacts_, found, [](const Contact &contact, PairEnergy &there) { there.stiffness = contact.stiffness; });
     return found;
 }
 
 void ContactSet::find(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<ContactPair> &pairs,
-                      View<Vec3> start, View<Vec3> positions) {
+                      View<Vec3> start, View<Vec3> positions, double damping) {
     overlaps.activate(mesh, material, pairs); // the same until contacts are found again, whatever the stiffness is then
-    std::vector<Contact> found = linearise(mesh, material, pairs, start, positions);
-    for_known(lagged_, found, [](const LaggedForce &before, Contact &now) { now.lagged_force = before.force; });
+    std::vector<Contact> found = linearise(mesh, material, pairs, start, positions, damping);
+    for_known(lagged_, found, [](const LaggedForce &before, Contact &now) {
+        if (now.gap < now.d_hat) now.lagged_force = before.force;
+    });
     contacts_ = std::move(found);
     for (const Tie &tie : ties) contacts_.push_back(as_contact(tie, int(&tie - ties.data())));
     lagged_.clear();

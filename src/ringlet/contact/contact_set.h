@@ -51,8 +51,10 @@ public:
 
     // Replaces the contacts by those of the contact pairs at `positions`; `start` says where the step began, for the slip.
     // The normal force of friction is lagged; it is 0 for a new contact: the force at an iterate says little of the solution.
+    // With `damping`, a part of their stiffness, pairs of moving primitives are contacts even where initial overlaps do not
+    // push.
     void find(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<ContactPair> &pairs,
-              View<Vec3> start, View<Vec3> positions);
+              View<Vec3> start, View<Vec3> positions, double damping = 0.0);
 
     // Keeps the slip of the contacts as a step ends, up to the stick length: what has slipped farther has slid.
     void commit_friction(View<Vec3> positions);
@@ -84,9 +86,10 @@ public:
 
 private:
     template <class Work>
-    void for_active_points(const CollisionMesh &mesh, const ContactPair &pair, View<Vec3> positions, const Work &work) const;
+    void for_points_of(const CollisionMesh &mesh, const ContactPair &pair, View<Vec3> positions, const Work &work) const;
     std::vector<Contact> linearise(const CollisionMesh &mesh, const ContactMaterial &material,
-                                   const std::vector<ContactPair> &pairs, View<Vec3> start, View<Vec3> positions) const;
+                                   const std::vector<ContactPair> &pairs, View<Vec3> start, View<Vec3> positions,
+                                   double damping) const;
     void index(const CollisionMesh &mesh);
 
     std::vector<Vec3> guess_; // before the first step: empty

@@ -13,14 +13,16 @@ Newton::Newton(VertexTable &table, Objective &objective, LinearSystem &system, C
 SolverEffort Newton::minimise(View<Vec3> start, const NewtonSettings &settings, Refinement &refinement, AlignedVector &x,
                               SceneReport &report) {
     largest_.assign(table_.objects, 0.0);
-    Iteration iteration{0, std::vector<unsigned char>(table_.objects, 0), false, SearchPath(objective_.blocks.size()), {}, {},
-                        {}};
+    // Damped hair pulls at a cloth that holds it, and strains.
+    const double damping = objective_.blocks.all_exact() ? solver_settings::first_damping : 0.0;
+    Iteration iteration{
+        0, damping, std::vector<unsigned char>(table_.objects, 0), false, SearchPath(objective_.blocks.size()), {}, {}, {}};
     const std::vector<Vec3> initial = configuration_.positions;
     int &number = iteration.number;
     for (bool all_converged = false; !all_converged; ++number) {
         if (number >= settings.iterations + settings.extra) break;
         if (number >= settings.iterations && !refinement.activate_stretched(objective_.blocks, configuration_.positions)) break;
-        find_contacts(start, report);
+        find_contacts(start, iteration.damping, report);
         iteration.leads_into_contact = number == 0 && settings.iterations > 1;
         solve(settings, x, report, iteration);
         if (number < settings.iterations) set_full_step(iteration);
@@ -37,6 +39,8 @@ SolverEffort Newton::minimise(View<Vec3> start, const NewtonSettings &settings, 
         refinement.add_steps(found.step);
         refinement.end_iteration(settings.tolerance);
         accept(found, report, iteration, x);
+        iteration.damping *= solver_settings::damping_decay;
+        if (iteration.damping < solver_settings::least_damping) iteration.damping = 0.0;
     }
     measure_left(initial, iteration, report);
     const double residual = largest_.empty() ? 0.0 : *std::max_element(largest_.begin(), largest_.end());
@@ -62,10 +66,10 @@ void Newton::measure_left(View<Vec3> initial, const Iteration &iteration, SceneR
     }
 }
 
-void Newton::find_contacts(View<Vec3> start, SceneReport &report) {
+void Newton::find_contacts(View<Vec3> start, double damping, SceneReport &report) {
     const Stopwatch watch(report.time_pairs);
     const std::vector<Vec3> &now = configuration_.positions;
-    objective_.find_contacts(configuration_.pairs.contact_pairs(now), start, now);
+    objective_.find_contacts(configuration_.pairs.contact_pairs(now), start, now, damping);
 }
 
 void Newton::solve(const NewtonSettings &settings, const AlignedVector &x, SceneReport &report, Iteration &iteration) {
@@ -84,10 +88,12 @@ void Newton::solve(const NewtonSettings &settings, const AlignedVector &x, Scene
     if (stiffness_.raise_loads(objective_.contacts)) table_.material.stiffness = stiffness_.levels(table_.mesh);
 }
 
-// A cluster that has converged stays from then on, however long others take.
+// A cluster that has converged stays from then on, however long others take. A damped direction is too short to tell.
 void Newton::stop_converged(double tolerance, Iteration &iteration) const {
     const std::vector<int> &cluster = objective_.couplings.clusters();
     std::vector<unsigned char> small(table_.objects, 1), before(table_.objects, 1); // of clusters
+    for (const Contact &contact : objective_.contacts.contacts())
+        if (contact.damping > 0.0) small[cluster[table_.object_of(contact.vertex[0])]] = 0;
     for (int o = 0; o < table_.objects; ++o) {
         small[cluster[o]] &= largest_[o] <= tolerance;
         before[cluster[o]] &= iteration.converged[o];

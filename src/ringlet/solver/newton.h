@@ -29,6 +29,7 @@ public:
 private:
     struct Iteration {
         int number;
+        double damping; // of relative motion, as a part of the stiffness of contacts; falls from iteration to iteration
         std::vector<unsigned char> converged; // per object: no coordinate of its cluster's direction is above the tolerance
         // The first of several: most contacts on this path are new, and nothing in the direction knows their energies. Coupled
         // objects take it without a search, in which a few of these contacts would halve the motion of their whole cluster.
@@ -39,7 +40,7 @@ private:
         std::vector<Vec3> full_step; // of the last iteration of all objects: where its search direction leads
     };
 
-    void find_contacts(View<Vec3> start, SceneReport &report);
+    void find_contacts(View<Vec3> start, double damping, SceneReport &report);
     void stop_converged(double tolerance, Iteration &iteration) const;
     void solve(const NewtonSettings &settings, const AlignedVector &x, SceneReport &report, Iteration &iteration);
     void choose_path(const AlignedVector &x, Iteration &iteration) const;

@@ -22,8 +22,8 @@ std::vector<double> Objective::contact_stiffness(double scale, double dt) const 
     return stiffness;
 }
 
-void Objective::find_contacts(const std::vector<ContactPair> &pairs, View<Vec3> start, View<Vec3> positions) {
-    contacts.find(table.mesh, table.material, pairs, start, positions);
+void Objective::find_contacts(const std::vector<ContactPair> &pairs, View<Vec3> start, View<Vec3> positions, double damping) {
+    contacts.find(table.mesh, table.material, pairs, start, positions, damping);
     values_.resize(contacts.contacts().size());
     couplings.find(contacts, table, blocks);
     touched_ = {size_t(blocks.count()), [&](const auto &work) {
@@ -84,7 +84,10 @@ void Objective::linearise_contacts(const AlignedVector &x) {
     blocks.gather(x, positions_);
     const std::vector<Contact> &all = contacts.contacts();
 #pragma omp parallel for schedule(static)
-    for (int k = 0; k < int(all.size()); ++k) values_[k] = contact_value(all[k], separation(all[k], positions_));
+    for (int k = 0; k < int(all.size()); ++k) {
+        values_[k] = contact_value(all[k], separation(all[k], positions_));
+        values_[k].hessian.diagonal().array() += all[k].damping;
+    }
 }
 
 void Objective::assemble(int block, const AlignedVector &x) {
@@ -111,7 +114,8 @@ void Objective::lag_normal_forces(const AlignedVector &direction) {
                 change += c.weight[i] * blocks.position(direction, c.vertex[i]);
         const double most =
             std::max(c.force, -c.stiffness * barrier(solver_settings::closest_gap * c.d_hat, c.d_hat, 0.0).first);
-        contacts.set_lagged_force(k, std::min(std::max(0.0, c.force - c.normal.dot(values_[k].hessian * change)), most));
+        const Vec3 pushed = values_[k].hessian * change - c.damping * change;
+        contacts.set_lagged_force(k, std::min(std::max(0.0, c.force - c.normal.dot(pushed)), most));
     }
 }
 

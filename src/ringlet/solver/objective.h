@@ -27,8 +27,9 @@ public:
     // The largest stiffness of each vertex against contacts, `scale` times that of its block [N/m]; infinite where prescribed.
     std::vector<double> contact_stiffness(double scale, double dt) const;
 
-    // Replaces the contacts by those of the contact pairs at `positions`; the step began at `start`.
-    void find_contacts(const std::vector<ContactPair> &pairs, View<Vec3> start, View<Vec3> positions);
+    // Replaces the contacts by those of the contact pairs at `positions`; the step began at `start`. The Hessian damps the
+    // relative motion of strands by `damping`, a part of the contacts' stiffness (Levenberg 1944).
+    void find_contacts(const std::vector<ContactPair> &pairs, View<Vec3> start, View<Vec3> positions, double damping = 0.0);
 
     // These objects, and those in contact with one of them.
     std::vector<unsigned char> with_touched(const std::vector<unsigned char> &objects) const;
