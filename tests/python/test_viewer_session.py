@@ -117,12 +117,12 @@ def test_who_asks_to_edit_is_named_and_the_answer_is_announced(folder: Path):
 
 
 def test_a_page_that_edits_keeps_the_lock_until_it_rests(folder: Path, monkeypatch):
-    monkeypatch.setattr("ringlet.viewer.edit_lock.ANSWER_AFTER", 0.5)
+    monkeypatch.setattr("ringlet.viewer.edit_lock.ANSWER_AFTER", 1.5)
     with serving(folder) as client, page(client, "one") as one, page(client, "two") as two:
         two.send(kind="lead")
         one.receive("role", asked=True)
-        for k in range(12):
-            one.send(kind="set", changes=[[["curl", "width"], 1.0 + 0.1 * k]], gesture=1)
+        for k in range(24):
+            one.send(kind="set", changes=[[["curl", "width"], 1.0 + 0.05 * k]], gesture=1)
             one.receive("heard")
             time.sleep(0.1)
         assert one.latest("role")["leads"]
