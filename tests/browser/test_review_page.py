@@ -76,7 +76,8 @@ def test_pictures_and_movies_are_saved(opened: Any):
     for turn in (0.3, 0.6):
         review.get(f"(ringlet.viewer.orbit({turn}, 0), ringlet.viewer.move())")
         review.page.wait_for_timeout(700)
-    assert review.page.get_by_label("Recorded time").inner_text() in ("0:01", "0:02", "0:03", "0:04")
+    minutes, seconds = review.page.get_by_label("Recorded time").inner_text().split(":")
+    assert 60 * int(minutes) + int(seconds) > 0
     with review.page.expect_download() as movie:
         film.click()
     assert Path(movie.value.path()).stat().st_size > 1000

@@ -102,10 +102,7 @@ def test_the_pointer_of_the_leader_is_seen_where_it_points(pair: tuple[Review, R
     assert abs(seen["x"] + 2 - box["x"] - theirs["x"] - theirs["width"] / 2 - across) < 3
     assert abs(seen["y"] + 2 - box["y"] - theirs["y"] - theirs["height"] / 2 - down) < 3
     two.page.set_viewport_size({"width": 800, "height": 500})  # another picture, the same place of the head
-    two.until("ringlet.viewer.idle")
-    two.page.wait_for_timeout(300)
-    moved = pointer.bounding_box()
-    assert abs(moved["x"] - seen["x"]) > 20
+    two.until(f"Math.abs(document.querySelector('.pointer').getBoundingClientRect().x - {seen['x']}) > 20")
     one.page.mouse.move(20, 10)
     pointer.wait_for(state="hidden")
 
