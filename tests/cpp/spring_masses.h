@@ -145,7 +145,7 @@ struct SpringScene {
 
     void begin(double dt, const Vec3 &gravity = Vec3::Zero()) {
         stiffness->begin_step(objective->contact_stiffness(1.0, dt), dt);
-        table.material.stiffness = stiffness->largest();
+        table.material.stiffness = table.material.firm_stiffness = stiffness->largest();
         objective->begin_step({dt, gravity, Vec3::Zero(), configuration->positions, {}}, configuration->positions);
     }
 

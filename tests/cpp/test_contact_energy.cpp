@@ -119,7 +119,8 @@ BOOST_AUTO_TEST_CASE(edges_that_touch_at_prescribed_ends_are_no_stiffer_than_the
     mesh.moves = {0, 1, 0, 1};
     mesh.object = {0, 0, 1, 1};
     mesh.anchor.assign(4, -1);
-    const ContactMaterial material{{prescribed, 2.0, prescribed, 3.0}, {0, 0, 0, 0}, {0.3}, 1, 1e-5};
+    const std::vector<double> stiffness = {prescribed, 2.0, prescribed, 3.0};
+    const ContactMaterial material{stiffness, stiffness, {0, 0, 0, 0}, {0.3}, 1, 1e-5};
     for (const double turned : {0.0, 1e-6, 1e-3}) {
         const std::vector<Vec3> now = {{0, 0, 0}, {0.01, 0, 0}, {turned, -turned, 1e-3}, {turned, 0.01, 1e-3}};
         mesh.rest = now;

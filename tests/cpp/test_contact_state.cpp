@@ -21,13 +21,19 @@ BOOST_AUTO_TEST_CASE(a_vertex_is_as_stiff_as_its_load_asks_for) {
     ContactStiffness stiffness(5);
     stiffness.begin_step({std::numeric_limits<double>::infinity(), largest, largest, largest, largest}, 0.01);
     stiffness.recall({0.0, 0.0, 0.0, 0.0, 0.05});
-    const std::vector<double> levels = stiffness.levels(mesh);
+    ContactMaterial material;
+    stiffness.set_levels(mesh, material);
+    const std::vector<double> &levels = material.stiffness, &firm = material.firm_stiffness;
     BOOST_TEST(std::isinf(levels[0]));
-    BOOST_TEST(levels[1] == 0.01 * largest);                                     // carries nothing
+    BOOST_TEST(levels[1] == 0.001 * largest); // carries nothing
+    BOOST_TEST(firm[1] == 0.01 * largest);
+    BOOST_TEST(std::isinf(firm[0]));
     BOOST_TEST(levels[3] == 0.1 * largest, boost::test_tools::tolerance(1e-12)); // as its neighbour
     BOOST_TEST(levels[4] == 0.1 * largest, boost::test_tools::tolerance(1e-12)); // 10 < 0.05 / d̂ ≤ 100
     stiffness.recall({0.0, 0.0, 0.0, 0.0, 10.0});
-    BOOST_TEST(stiffness.levels(mesh)[4] == largest);
+    stiffness.set_levels(mesh, material);
+    BOOST_TEST(levels[4] == largest);
+    BOOST_TEST(firm[4] == largest);
     stiffness.begin_step({largest, largest, largest, largest, largest}, 0.25); // a half-life
     BOOST_TEST(stiffness.loads()[4] == 5.0, boost::test_tools::tolerance(1e-12));
 }
@@ -50,7 +56,8 @@ BOOST_AUTO_TEST_CASE(an_overlap_that_stays_keeps_its_force_at_any_stiffness) {
     for (const double stiffness : {1.0, 10.0, 1e4}) {
         InitialOverlaps overlaps;
         overlaps.add(contact_name(pair), 1e-4, 2e-4);
-        overlaps.activate(mesh, {std::vector<double>(4, stiffness), {}, {}, 1, 0.0}, {pair});
+        const std::vector<double> of_vertices(4, stiffness);
+        overlaps.activate(mesh, {of_vertices, of_vertices, {}, {}, 1, 0.0}, {pair});
         const double d_hat = overlaps.find(pair)->activation;
         BOOST_TEST(-stiffness * barrier(1e-4, d_hat, 0.0).first == 2e-4, boost::test_tools::tolerance(1e-10));
     }

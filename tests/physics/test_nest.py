@@ -29,17 +29,17 @@ def test_a_far_nest_changes_no_bit():
     assert np.array_equal(together[:, : alone.shape[1]], alone)
 
 
-def test_coils_keep_three_quarters_of_their_converged_swing():
+def test_coils_keep_nine_tenths_of_their_converged_swing():
     """With five iterations; before the coarse space it was 0.58 for 37 coils, with three to a tenth of the residual."""
     places = nest.hexagon(3)
     curves = nest.locks(places, nest.WIDTH)
     converged, got = (nest.swing(nest.tips(curves, solver)) for solver in (nest.CONVERGED, Solver()))
-    assert 0.75 < got / converged < 1.02
+    assert 0.9 < got / converged < 1.02
 
 
 def test_a_converged_step_has_nothing_left():
     """The motion that a step has not made, as its last search direction tells, is rounding once it has converged."""
     few, many = (play([nest.hexagon(1)], Solver(newton=newton))[1] for newton in (2, 100))
     few, many = (sum(step["left"] for step in steps) / sum(step["moved"] for step in steps) for steps in (few, many))
-    assert few > 1e-4
+    assert abs(few) > 1e-4
     assert abs(many) < 1e-6

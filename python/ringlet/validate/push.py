@@ -1,8 +1,9 @@
-"""Normal contact forces: the equilibrium gap of a strand that is pressed onto the ground.
+"""Normal contact forces: the equilibrium gap of a strand that is pressed onto the ground, or onto strands across it.
 
-A contact of activation distance r and stiffness k has the force k (r − g) at gaps g from r to r/2, and k r²/4g below.
-The stiffness of a vertex is 0.01, 0.1 or 1 times ``k``: the lowest level whose force at gap 0.25 r or more suffices.
-The remembered load halves in a quarter of a second, so that the vertex softens again.
+A contact of activation distance r, stiffness k and onset a has the force k (r − g)²/2a at gaps g down to r − a. With
+s = r − a/2, it is k (s − g) down to s/2, and k s²/4g below.
+The stiffness of a vertex is 0.01, 0.1 or 1 times ``k``, against strands also 0.001 times: the lowest level whose force
+at gap 0.25 r or more suffices. The remembered load halves in a quarter of a second, so that the vertex softens again.
 """
 
 from __future__ import annotations
@@ -24,18 +25,27 @@ from ringlet.validate.case import Case, Row
 DISTANCE, STEP = 1e-3, 1 / 240  # activation distance r [m], time step [s]
 PRESSES = (0.0005, 0.002, 0.004, 0.02, 0.05, 0.2, 0.5, 1.0, 3.0, 10.0)  # loads [k r]
 LEVELS = (0.01, 0.1, 1.0)  # stiffness levels [k]
+STRAND_PRESSES = (0.0001, 0.0005, 0.001, 0.0015)  # loads [k r]
+STRAND_LEVELS = (0.001, *LEVELS)  # of contacts between strands [k]
 ONSET = 0.15  # depth over which the stiffness of the barrier rises from 0 [r]
 
 
-def pressed(*presses: float, steps: int = 100) -> list[float]:
-    """Gaps relative to r after ``steps`` steps under each load in turn [k r]; velocities are reset after each step."""
-    x = 5e-3 * np.arange(24)
-    points = np.c_[x, np.full_like(x, 0.99 * DISTANCE), 0 * x]
-    soft = np.where(x < 7e-3, 1e-14, 1.0)  # edges so soft that the vertices behind them are free
-    strands = Strands(Curves.from_list([points]), Material(drag=0.0), 2, {"stretch": soft, "bend": soft})
+def pressed(*presses: float, steps: int = 100, on_strands: bool = False) -> list[float]:
+    """Gaps relative to r after ``steps`` steps under each load in turn [k r]; velocities are reset after each step.
+
+    on_strands: below each vertex a held strand lies across, in place of the ground
+    """
+    x = 5e-3 * np.arange(64)
+    curves = [np.c_[x, np.full_like(x, 0.99 * DISTANCE), 0 * x]]
+    if on_strands:
+        curves += [np.array([[at, 0.0, z] for z in (-1e-3, 1e-3, 3e-3)]) for at in x]
+    points = np.concatenate(curves)
+    soft = np.ones(len(points))
+    soft[:2] = 1e-14  # edges so soft that the vertices behind them are free
+    strands = Strands(Curves.from_list(curves), Material(drag=0.0), 2, {"stretch": soft, "bend": soft})
     ground = Body(np.array([[-2.0, 0, 4], [-2, 0, -4], [8, 0, 0]]), np.array([[0, 1, 2]]), DISTANCE / 2, 0.0)
-    scene = Scene(strands, [ground], Contact(radius=DISTANCE / 2))
-    middle, length = 13, 5e-3
+    scene = Scene(strands, [] if on_strands else [ground], Contact(radius=DISTANCE / 2))
+    middle, length = 34, 5e-3
     stretch, bend, _ = strands.stiffness
     k = strands.masses[middle] / STEP**2 + bend[middle] / length**2 + 0.1 * stretch[middle]
     gaps = []
@@ -63,6 +73,9 @@ def gap_under(press: NDArray[np.floating], levels: tuple[float, ...] = LEVELS) -
 def run() -> Iterator[Row]:
     for press, gap in zip(PRESSES, gap_under(np.array(PRESSES)), strict=True):
         yield Row(f"gap / r under {press:g} k r", float(gap), pressed(press)[0], 1e-3)
+    for press in STRAND_PRESSES:  # two edges push at each vertex, each with half of the force
+        gap = float(gap_under(np.array([0.5 * press]), STRAND_LEVELS)[0])
+        yield Row(f"gap / r under {press:g} k r, on strands", gap, pressed(press, on_strands=True)[0], 1e-3)
     first, after = 0.5, 0.002
     gaps = pressed(first, after, steps=5), pressed(first, after, steps=600)
     hard = float(gap_under(np.array([after]), LEVELS[-1:])[0])

@@ -29,7 +29,7 @@ Contact contact_at(const CollisionMesh &mesh, const ContactMaterial &material, c
     Contact contact{};
     contact.vertex = at.vertex, contact.weight = at.weight, contact.first = at.first;
     contact.normal = separation(contact, positions) / std::sqrt(point.closest.distance2);
-    contact.stiffness = point.share * pair_stiffness(at, material);
+    contact.stiffness = point.share * pair_stiffness(mesh, at, material);
     contact.friction = material.friction_of(at.vertex[0], at.vertex[3]);
     contact.stick_length = material.stick_length;
     contact.pair = contact_name(pair, point.number);
@@ -158,7 +158,7 @@ std::vector<PairEnergy> ContactSet::energies(const CollisionMesh &mesh, const Co
                           const Stencil at = stencil(mesh, pair, point.closest);
                           energies.push_back({contact_name(pair, point.number),
                                               {mesh.object[at.vertex[0]], mesh.object[at.vertex[3]]},
-                                              point.share * pair_stiffness(at, material),
+                                              point.share * pair_stiffness(mesh, at, material),
                                               barrier(gap, d_hat, barrier_end).value});
                       });
     });

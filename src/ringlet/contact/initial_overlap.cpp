@@ -32,7 +32,7 @@ void InitialOverlaps::activate(const CollisionMesh &mesh, const ContactMaterial 
         const auto found = pairs_.find(contact_name(pair));
         if (found == pairs_.end()) continue;
         InitialOverlap &overlap = found->second;
-        const double stiffness = pair_stiffness(stencil(mesh, pair, pair.closest), material);
+        const double stiffness = pair_stiffness(mesh, stencil(mesh, pair, pair.closest), material);
         overlap.activation = activation_distance(overlap.force / stiffness, overlap.gap);
     }
 }

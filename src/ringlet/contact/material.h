@@ -6,9 +6,10 @@
 namespace ringlet {
 
 struct ContactMaterial {
-    std::vector<double> stiffness; // per vertex [N/m]; infinite where the motion is prescribed
-    std::vector<int> material;     // per vertex: row of `friction`
-    std::vector<double> friction;  // μ of each pair of materials, row-major, materials × materials
+    std::vector<double> stiffness;      // per vertex, between strands [N/m]; infinite where the motion is prescribed
+    std::vector<double> firm_stiffness; // per vertex, where a cloth or a body takes part [N/m]
+    std::vector<int> material;          // per vertex: row of `friction`
+    std::vector<double> friction;       // μ of each pair of materials, row-major, materials × materials
     int materials = 1;
     double stick_length = 0.0; // [m]
 

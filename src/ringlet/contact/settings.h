@@ -16,7 +16,8 @@ inline constexpr double least_gap = 0.01;          // of d̂: closer pairs can h
 inline constexpr double least_loaded_depth = 0.01; // of d̂: a shallower overlap that carries a load does so no more stiffly
 
 // Stiffness levels of strands
-inline constexpr double softest_level = 0.01; // of the largest stiffness
+inline constexpr double softest_level = 0.001; // of the largest stiffness, between strands
+inline constexpr double firm_level = 0.01;     // where a cloth or a body takes part
 inline constexpr double level_factor = 10.0;
 inline constexpr double load_half_life = 0.25; // [s]
 

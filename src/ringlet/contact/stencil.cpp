@@ -13,12 +13,14 @@ Stencil stencil(const CollisionMesh &mesh, const ContactPair &pair, const Closes
     return stencil;
 }
 
-double pair_stiffness(const Stencil &stencil, const ContactMaterial &material) {
+double pair_stiffness(const CollisionMesh &mesh, const Stencil &stencil, const ContactMaterial &material) {
+    const bool of_strands = std::max(stencil.vertex[0], stencil.vertex[3]) < int(mesh.along_strand.size());
+    const std::vector<double> &stiffness = of_strands ? material.stiffness : material.firm_stiffness;
     const auto of_side = [&](int begin, int end) {
         double softest = std::numeric_limits<double>::infinity(), compliance = 0.0;
-        for (int i = begin; i < end; ++i) softest = std::min(softest, material.stiffness[stencil.vertex[i]]);
+        for (int i = begin; i < end; ++i) softest = std::min(softest, stiffness[stencil.vertex[i]]);
         for (int i = begin; i < end; ++i) {
-            const double own = material.stiffness[stencil.vertex[i]];
+            const double own = stiffness[stencil.vertex[i]];
             compliance += std::abs(stencil.weight[i]) / (std::isfinite(own) ? own : softest);
         }
         return 1.0 / compliance;

@@ -28,7 +28,7 @@ Stencil stencil(const CollisionMesh &mesh, const ContactPair &pair, const Closes
 
 // That of the softer side [N/m]. A prescribed vertex beside a free one of the same edge is as soft as that: else the free one
 // would be pushed without bound.
-double pair_stiffness(const Stencil &stencil, const ContactMaterial &material);
+double pair_stiffness(const CollisionMesh &mesh, const Stencil &stencil, const ContactMaterial &material);
 
 // A point at which a pair pushes, with its share of the stiffness.
 struct ContactPoint {

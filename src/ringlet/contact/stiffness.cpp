@@ -21,8 +21,8 @@ bool ContactStiffness::raise_loads(const ContactSet &contacts) {
     return raised;
 }
 
-std::vector<double> ContactStiffness::levels(const CollisionMesh &mesh) const {
-    std::vector<double> stiffness = largest_;
+void ContactStiffness::set_levels(const CollisionMesh &mesh, ContactMaterial &material) const {
+    material.stiffness = material.firm_stiffness = largest_;
     const int strand_vertices = int(mesh.along_strand.size());
     for (int v = 0; v < strand_vertices; ++v) {
         if (!mesh.moves[v]) continue;
@@ -32,9 +32,9 @@ std::vector<double> ContactStiffness::levels(const CollisionMesh &mesh) const {
         const double d_hat = 2.0 * mesh.radius[v]; // of two such strands
         double enough = contact_settings::softest_level * largest_[v];
         while (enough < load / d_hat && enough < largest_[v]) enough *= contact_settings::level_factor;
-        stiffness[v] = std::min(enough, largest_[v]);
+        material.stiffness[v] = std::min(enough, largest_[v]);
+        material.firm_stiffness[v] = std::max(material.stiffness[v], contact_settings::firm_level * largest_[v]);
     }
-    return stiffness;
 }
 
 } // namespace ringlet

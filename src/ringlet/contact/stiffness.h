@@ -8,8 +8,8 @@
 namespace ringlet {
 
 // Were contacts always as stiff as the largest load needs, dense hair would stand still: nearly every search direction leads
-// into a new contact whose energy is thousands of times that of the motion. A strand's vertex is a hundredth as stiff as it may
-// have to be, a tenth where its load is more than that can carry, and all of it where it must. With so few levels a step has
+// into a new contact whose energy is thousands of times that of the motion. A strand's vertex is a thousandth as stiff as it
+// may have to be; a hundredth, a tenth or all of it where its load is more than that can carry. With so few levels a step has
 // one solution, whatever iterates lead to it.
 class ContactStiffness {
 public:
@@ -24,7 +24,8 @@ public:
 
     const std::vector<double> &largest() const { return largest_; }
 
-    std::vector<double> levels(const CollisionMesh &mesh) const; // per vertex [N/m]
+    // Sets the stiffness of every vertex. Against a cloth or a body it is not as soft as between strands.
+    void set_levels(const CollisionMesh &mesh, ContactMaterial &material) const;
 
     const std::vector<double> &loads() const { return load_; } // per vertex, decayed: the largest force of a contact [N]
     void recall(std::vector<double> loads) { load_ = std::move(loads); }

@@ -129,6 +129,7 @@ std::vector<Contact> Scene::touching() {
     pairs.update_bounds({now, now}, {.margin = 0.0, .max_path = 0.0});
     ContactMaterial material = vertices.material;
     material.stiffness.assign(vertices.count(), 1.0);
+    material.firm_stiffness = material.stiffness;
     ContactSet contacts; // without a past
     contacts.find(vertices.mesh, material, pairs.contact_pairs(now), now, now);
     pairs.clear();

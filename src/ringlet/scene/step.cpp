@@ -13,7 +13,7 @@ namespace {
 void begin_contact(SceneData &scene, double dt) {
     scene.vertices.material.stick_length = scene.contact.creep_speed * dt;
     scene.stiffness.begin_step(scene.objective.contact_stiffness(scene.contact.stiffness, dt), dt);
-    scene.vertices.material.stiffness = scene.stiffness.levels(scene.vertices.mesh);
+    scene.stiffness.set_levels(scene.vertices.mesh, scene.vertices.material);
 }
 
 // Before the first step: the initial overlaps and their forces.

@@ -8,7 +8,8 @@ namespace ringlet {
 ConvergenceTest::ConvergenceTest(double tolerance, const Couplings &couplings, const CoarseSpace &coarse,
                                  const std::vector<int> &inexact, const std::vector<double> &residual2,
                                  const std::vector<double> &rz)
-    : tolerance_(tolerance), couplings_(couplings), inexact_(inexact), by_error_(residual2.size(), 0), small_(residual2) {
+    : tolerance_(tolerance), couplings_(couplings), inexact_(inexact), by_error_(residual2.size(), 0),
+      goes_on_(residual2.size(), 1), small_(residual2) {
     const double small = std::pow(solver_settings::residual_share * tolerance, 2);
     for (double &residual : small_) residual *= small;
     for (size_t cluster = 0; cluster < by_error_.size(); ++cluster) by_error_[cluster] = coarse.covers(int(cluster));
@@ -30,7 +31,7 @@ double ConvergenceTest::error2(int cluster) const {
     return sum;
 }
 
-std::vector<unsigned char> ConvergenceTest::unconverged(const IterationProgress &now) const {
+std::vector<unsigned char> ConvergenceTest::unconverged(const IterationProgress &now) {
     const std::vector<int> &cluster = couplings_.clusters();
     // Loosely solved, few objects are not worth more iterations, for which all others would wait.
     const bool enough =
@@ -44,8 +45,9 @@ std::vector<unsigned char> ConvergenceTest::unconverged(const IterationProgress 
         const bool is_small = now.iterations > 0 && now.rz[object] <= small_inexact_[k];
         goes_on[cluster[object]] |= now.residual2[cluster[object]] > 0.0 && !is_small;
     }
+    for (size_t c = 0; c < cluster.size(); ++c) goes_on_[c] &= goes_on[c];
     std::vector<unsigned char> objects(cluster.size());
-    for (size_t object = 0; object < objects.size(); ++object) objects[object] = goes_on[cluster[object]];
+    for (size_t object = 0; object < objects.size(); ++object) objects[object] = goes_on_[cluster[object]];
     return objects;
 }
 

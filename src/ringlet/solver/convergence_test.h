@@ -29,8 +29,8 @@ public:
 
     void add_decrease(int cluster, double energy); // in one iteration [J]
 
-    // Per object, whether its cluster goes on.
-    std::vector<unsigned char> unconverged(const IterationProgress &now) const;
+    // Per object, whether its cluster goes on. One that has converged stays so: while others go on, it is not measured.
+    std::vector<unsigned char> unconverged(const IterationProgress &now);
 
 private:
     double error2(int cluster) const;
@@ -39,6 +39,7 @@ private:
     const Couplings &couplings_;
     const std::vector<int> &inexact_;           // objects
     std::vector<unsigned char> by_error_;       // per cluster
+    std::vector<unsigned char> goes_on_;        // per cluster
     std::vector<double> small_, small_inexact_; // residuals at which clusters and inexact objects have converged
     std::array<std::vector<double>, solver_settings::error_delay> decreases_; // per cluster, the last first [J]
 };

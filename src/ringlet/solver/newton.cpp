@@ -85,7 +85,7 @@ void Newton::solve(const NewtonSettings &settings, const AlignedVector &x, Scene
     measure_direction(objective_.blocks, direction, largest_);
     stop_converged(settings.tolerance, iteration);
     objective_.lag_normal_forces(direction);
-    if (stiffness_.raise_loads(objective_.contacts)) table_.material.stiffness = stiffness_.levels(table_.mesh);
+    if (stiffness_.raise_loads(objective_.contacts)) stiffness_.set_levels(table_.mesh, table_.material);
 }
 
 // A cluster that has converged stays from then on, however long others take. A damped direction is too short to tell.

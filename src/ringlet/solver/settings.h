@@ -13,9 +13,9 @@ inline constexpr double bound_margin = 0.2;     // of the radius of strands
 
 // Damping of relative motion (Levenberg 1944), as a part of the stiffness of contacts: it comes to nothing, so that the
 // solution is that of the objective
-inline constexpr double first_damping = 0.03;
+inline constexpr double first_damping = 0.1;
 inline constexpr double damping_decay = 0.5;
-inline constexpr double least_damping = 3e-4;
+inline constexpr double least_damping = 1e-3;
 
 // Search path
 inline constexpr double near_impact = 0.05;  // of the path: what has an impact before takes the straight path
