@@ -1,5 +1,7 @@
 #include "ringlet/solver/contact_energy.h"
 
+#include "ringlet/math/collect.h"
+
 #include <algorithm>
 
 namespace ringlet {
@@ -16,17 +18,26 @@ void ContactEnergy::remove(View<unsigned char> changed) {
 
 void ContactEnergy::measure_kept(View<Vec3> positions, View<unsigned char> changed) {
     const std::vector<Contact> &all = contacts_.contacts();
-    for (size_t k = 0; k < all.size(); ++k)
-        if (const auto [a, b] = objects_of(all[k]); either(changed, a, b))
+#pragma omp parallel for schedule(static)
+    for (int k = 0; k < int(all.size()); ++k)
+        if (const auto [a, b] = objects_[k]; either(changed, a, b))
             kept_[k] = kept_energy(all[k], separation(all[k], positions));
 }
 
 void ContactEnergy::at_linearisation(View<Vec3> positions, View<unsigned char> active) {
-    kept_.assign(contacts_.contacts().size(), 0.0);
+    const std::vector<Contact> &all = contacts_.contacts();
+    objects_.resize(all.size());
+    kept_.assign(all.size(), 0.0);
+#pragma omp parallel for schedule(static)
+    for (int k = 0; k < int(all.size()); ++k)
+        objects_[k] = {table_.object_of(all[k].vertex[0]), table_.object_of(all[k].vertex[3])};
     remove(active);
-    for (const Contact &contact : contacts_.contacts())
-        if (const auto [a, b] = objects_of(contact); !contact.is_tie() && either(active, a, b))
-            barriers_.push_back({a, b, barrier_energy(contact, contact.gap)});
+    const View<Contact> without_ties = contacts_.without_ties();
+    const std::vector<Shared> of_active = collect<Shared>(int(without_ties.size()), [&](int k, std::vector<Shared> &barriers) {
+        if (const auto [a, b] = objects_[k]; either(active, a, b))
+            barriers.push_back({a, b, barrier_energy(all[k], all[k].gap)});
+    });
+    barriers_.insert(barriers_.end(), of_active.begin(), of_active.end());
     measure_kept(positions, active);
 }
 
@@ -46,11 +57,7 @@ void ContactEnergy::add_to(std::vector<double> &of_objects) const {
         if (b >= 0) of_objects[b] += a >= 0 ? 0.5 * energy : energy;
     };
     for (const Shared &barrier : barriers_) share(barrier.a, barrier.b, barrier.energy);
-    const std::vector<Contact> &all = contacts_.contacts();
-    for (size_t k = 0; k < all.size(); ++k) {
-        const auto [a, b] = objects_of(all[k]);
-        share(a, b, kept_[k]);
-    }
+    for (size_t k = 0; k < kept_.size(); ++k) share(objects_[k][0], objects_[k][1], kept_[k]);
 }
 
 } // namespace ringlet

@@ -30,16 +30,14 @@ private:
         int a, b; // objects; −1: none, the side's motion is prescribed
         double energy;
     };
-    std::array<int, 2> objects_of(const Contact &contact) const {
-        return {table_.object_of(contact.vertex[0]), table_.object_of(contact.vertex[3])};
-    }
     void remove(View<unsigned char> changed);
     void measure_kept(View<Vec3> positions, View<unsigned char> changed);
 
     const VertexTable &table_;
     const ContactSet &contacts_;
     std::vector<Shared> barriers_;
-    std::vector<double> kept_; // of each contact: friction, or that of a tie [J]
+    std::vector<std::array<int, 2>> objects_; // of each contact, as in Shared
+    std::vector<double> kept_;                // of each contact: friction, or that of a tie [J]
 };
 
 } // namespace ringlet

@@ -92,8 +92,9 @@ void Newton::solve(const NewtonSettings &settings, const AlignedVector &x, Scene
 void Newton::stop_converged(double tolerance, Iteration &iteration) const {
     const std::vector<int> &cluster = objective_.couplings.clusters();
     std::vector<unsigned char> small(table_.objects, 1), before(table_.objects, 1); // of clusters
-    for (const Contact &contact : objective_.contacts.contacts())
-        if (contact.damping > 0.0) small[cluster[table_.object_of(contact.vertex[0])]] = 0;
+    if (iteration.damping > 0.0)
+        for (const Contact &contact : objective_.contacts.contacts())
+            if (contact.damping > 0.0) small[cluster[table_.object_of(contact.vertex[0])]] = 0;
     for (int o = 0; o < table_.objects; ++o) {
         small[cluster[o]] &= largest_[o] <= tolerance;
         before[cluster[o]] &= iteration.converged[o];

@@ -105,6 +105,7 @@ void Objective::assemble(int block, const AlignedVector &x) {
 
 void Objective::lag_normal_forces(const AlignedVector &direction) {
     const std::vector<Contact> &all = contacts.contacts();
+#pragma omp parallel for schedule(static)
     for (int k = 0; k < int(all.size()); ++k) {
         const Contact &c = all[k];
         if (c.is_tie()) continue;
