@@ -5,7 +5,6 @@
 
 #include "ringlet/scene/scene.h"
 
-#include <map>
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/vector.h>
 
@@ -31,8 +30,8 @@ nb::dict memory_of(const SceneMemory &memory) {
     std::vector<double> overlaps, forces, friction, heights;
     std::vector<int> penetrating, lagging;
     std::vector<Vec3> places;
-    for (const auto &[pair, of] : std::map<uint64_t, InitialOverlap>(memory.overlaps.begin(), memory.overlaps.end())) {
-        overlapping.push_back(pair);
+    for (const InitialOverlap &of : memory.overlaps) {
+        overlapping.push_back(of.pair);
         overlaps.insert(overlaps.end(), {of.gap, of.force, of.activation});
     }
     for (const FrictionState &of : memory.friction) {
@@ -104,7 +103,7 @@ SceneMemory memory_from(const nb::dict &arrays) {
     for (size_t k = 0; k < places.size(); ++k) memory.lagging.emplace_back(lagging[k], places[k]);
     for (size_t k = 0; k < overlapping.size(); ++k) {
         const double *values = overlaps.data() + values_of_overlap * k;
-        memory.overlaps[overlapping[k]] = {values[0], values[1], values[2]};
+        memory.overlaps.push_back({overlapping[k], values[0], values[1], values[2]});
     }
     for (size_t k = 0; k < lagged.size(); ++k) memory.lagged_forces.push_back({lagged[k], forces[k]});
     for (size_t k = 0; k < sticking.size(); ++k) {

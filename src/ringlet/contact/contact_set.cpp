@@ -1,5 +1,6 @@
 #include "ringlet/contact/contact_set.h"
 
+#include "ringlet/contact/known.h"
 #include "ringlet/contact/settings.h"
 #include "ringlet/math/collect.h"
 
@@ -10,17 +11,6 @@
 
 namespace ringlet {
 namespace {
-
-// Calls work(known, found) for each of `found` whose name `before` has; both are sorted by name.
-template <class Known, class Found, class Work>
-void for_known(const std::vector<Known> &before, std::vector<Found> &found, const Work &work) {
-    auto known = before.begin();
-    for (Found &now : found) {
-        while (known != before.end() && known->pair < now.pair) ++known;
-        if (known == before.end()) return;
-        if (known->pair == now.pair) work(*known, now);
-    }
-}
 
 // The contact of a pair at one of its points, but for what depends on the activation distance.
 Contact contact_at(const CollisionMesh &mesh, const ContactMaterial &material, const ContactPair &pair,
@@ -71,6 +61,25 @@ Vec3 slip_of_force(const Contact &contact, View<Vec3> positions, const Vec3 &for
     return -slip_to_hold(std::min(length / limit, 1.0)) * contact.stick_length / length * held;
 }
 
+// Calls work(point, gap, activation distance, barrier end, loaded fraction) for the points of a pair; beyond the activation
+// distance a point does not push.
+template <class Work>
+void for_points_of(const CollisionMesh &mesh, const ContactPair &pair, const InitialOverlap *overlap, View<Vec3> positions,
+                   const Work &work) {
+    const double least_depth = contact_settings::least_loaded_depth * pair.d_hat;
+    double d_hat = pair.d_hat, most = pair.d_hat; // the largest force that it takes up, per stiffness [m]
+    if (overlap != nullptr) {
+        d_hat = std::min(d_hat, overlap->activation), most = std::max(d_hat, least_depth);
+        if (overlap->force > 0.0)
+            most = std::min(most, -barrier(std::min(overlap->gap, pair.d_hat - least_depth), pair.d_hat, 0.0).first);
+    }
+    const double loaded_fraction = most / pair.d_hat;
+    for_contact_points(mesh, pair, positions, [&](const ContactPoint &point) {
+        const double gap = std::sqrt(point.closest.distance2);
+        if (gap > 0.0) work(point, gap, d_hat, d_hat / contact_settings::d_hat_per_barrier_end, loaded_fraction);
+    });
+}
+
 } // namespace
 
 void ContactSet::begin(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<ContactPair> &pairs,
@@ -102,32 +111,22 @@ void ContactSet::commit_friction(View<Vec3> positions) {
     }
 }
 
-// Calls work(point, gap, activation distance, barrier end, loaded fraction) for the points of a pair; beyond the activation
-// distance a point does not push.
-template <class Work>
-void ContactSet::for_points_of(const CollisionMesh &mesh, const ContactPair &pair, View<Vec3> positions,
-                               const Work &work) const {
-    const double least_depth = contact_settings::least_loaded_depth * pair.d_hat;
-    double d_hat = pair.d_hat, most = pair.d_hat; // the largest force that it takes up, per stiffness [m]
-    if (const InitialOverlap *overlap = overlaps.find(pair)) {
-        d_hat = std::min(d_hat, overlap->activation), most = std::max(d_hat, least_depth);
-        if (overlap->force > 0.0)
-            most = std::min(most, -barrier(std::min(overlap->gap, pair.d_hat - least_depth), pair.d_hat, 0.0).first);
-    }
-    const double loaded_fraction = most / pair.d_hat;
-    for_contact_points(mesh, pair, positions, [&](const ContactPoint &point) {
-        const double gap = std::sqrt(point.closest.distance2);
-        if (gap > 0.0) work(point, gap, d_hat, d_hat / contact_settings::d_hat_per_barrier_end, loaded_fraction);
+// What add(pair, its initial overlap or null, list) appends for each pair.
+template <class T, class Add>
+std::vector<T> ContactSet::collect_of_pairs(const std::vector<ContactPair> &pairs, const Add &add) const {
+    return collect_ranges<T>(int(pairs.size()), [&](int begin, int end, std::vector<T> &list) {
+        InitialOverlaps::Search overlapping = overlaps.search();
+        for (int k = begin; k < end; ++k) add(pairs[k], overlapping.find(pairs[k]), list);
     });
 }
 
 std::vector<Contact> ContactSet::linearise(const CollisionMesh &mesh, const ContactMaterial &material,
                                            const std::vector<ContactPair> &pairs, View<Vec3> start, View<Vec3> positions,
                                            double damping) const {
-    std::vector<Contact> found = collect<Contact>(int(pairs.size()), [&](int k, std::vector<Contact> &contacts) {
-        for_points_of(mesh, pairs[k], positions,
+    const auto add = [&](const ContactPair &pair, const InitialOverlap *overlap, std::vector<Contact> &contacts) {
+        for_points_of(mesh, pair, overlap, positions,
                       [&](const ContactPoint &point, double gap, double d_hat, double barrier_end, double loaded) {
-                          Contact contact = contact_at(mesh, material, pairs[k], point, positions);
+                          Contact contact = contact_at(mesh, material, pair, point, positions);
                           if (mesh.moves[contact.vertex[0]] && mesh.moves[contact.vertex[3]])
                               contact.damping = damping * contact.stiffness;
                           if (gap >= d_hat && contact.damping == 0.0) return;
@@ -139,7 +138,8 @@ std::vector<Contact> ContactSet::linearise(const CollisionMesh &mesh, const Cont
                           contact.force = normal_force(contact, separation(contact, positions));
                           contacts.push_back(contact);
                       });
-    });
+    };
+    std::vector<Contact> found = collect_of_pairs<Contact>(pairs, add);
     for_known(friction_, found, [](const FrictionState &before, Contact &now) { now.reference -= before.slip; });
     if (guess_.empty()) return found;
 #pragma omp parallel for schedule(static)
@@ -150,9 +150,8 @@ std::vector<Contact> ContactSet::linearise(const CollisionMesh &mesh, const Cont
 
 std::vector<PairEnergy> ContactSet::energies(const CollisionMesh &mesh, const ContactMaterial &material,
                                              const std::vector<ContactPair> &pairs, View<Vec3> positions) const {
-    std::vector<PairEnergy> found = collect<PairEnergy>(int(pairs.size()), [&](int k, std::vector<PairEnergy> &energies) {
-        const ContactPair &pair = pairs[k];
-        for_points_of(mesh, pair, positions,
+    const auto add = [&](const ContactPair &pair, const InitialOverlap *overlap, std::vector<PairEnergy> &energies) {
+        for_points_of(mesh, pair, overlap, positions,
                       [&](const ContactPoint &point, double gap, double d_hat, double barrier_end, double) {
                           if (gap >= d_hat) return;
                           const Stencil at = stencil(mesh, pair, point.closest);
@@ -161,7 +160,8 @@ std::vector<PairEnergy> ContactSet::energies(const CollisionMesh &mesh, const Co
                                               point.share * pair_stiffness(mesh, at, material),
                                               barrier(gap, d_hat, barrier_end).value});
                       });
-    });
+    };
+    std::vector<PairEnergy> found = collect_of_pairs<PairEnergy>(pairs, add);
     for_known(contacts_, found, [](const Contact &contact, PairEnergy &there) { there.stiffness = contact.stiffness; });
     return found;
 }

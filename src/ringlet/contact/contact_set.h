@@ -85,8 +85,7 @@ public:
     void recall(std::vector<LaggedForce> forces) { lagged_ = std::move(forces); }
 
 private:
-    template <class Work>
-    void for_points_of(const CollisionMesh &mesh, const ContactPair &pair, View<Vec3> positions, const Work &work) const;
+    template <class T, class Add> std::vector<T> collect_of_pairs(const std::vector<ContactPair> &pairs, const Add &add) const;
     std::vector<Contact> linearise(const CollisionMesh &mesh, const ContactMaterial &material,
                                    const std::vector<ContactPair> &pairs, View<Vec3> start, View<Vec3> positions,
                                    double damping) const;

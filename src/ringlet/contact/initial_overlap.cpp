@@ -1,45 +1,52 @@
 #include "ringlet/contact/initial_overlap.h"
 
+#include "ringlet/contact/known.h"
+
 #include <algorithm>
 
 namespace ringlet {
+namespace {
+
+uint64_t name(const ContactPair &pair) { return contact_name(pair); }
+
+} // namespace
 
 void InitialOverlaps::grow(double length) {
-    for (auto &[name, overlap] : pairs_) overlap.activation = overlap.gap += length;
+    for (InitialOverlap &overlap : all_) overlap.activation = overlap.gap += length;
 }
 
 void InitialOverlaps::settle(const std::vector<ContactPair> &pairs, const std::vector<Contact> &contacts, View<Vec3> positions,
                              double length) {
-    for (auto &[name, overlap] : pairs_) overlap.force = 0.0;
-    for (const Contact &contact : contacts) {
-        const auto found = pairs_.find(pair_of(contact.pair));
-        if (found != pairs_.end()) found->second.force += normal_force(contact, separation(contact, positions));
-    }
-    Pairs left;
-    for (const ContactPair &pair : pairs) {
-        const auto found = pairs_.find(contact_name(pair));
-        if (found == pairs_.end()) continue;
-        InitialOverlap &overlap = left[found->first] = found->second;
+    for (InitialOverlap &overlap : all_) overlap.force = 0.0;
+    for_known(
+        all_, contacts, [](const Contact &contact) { return pair_of(contact.pair); },
+        [&](InitialOverlap &overlap, const Contact &contact) {
+            overlap.force += normal_force(contact, separation(contact, positions));
+        });
+    std::vector<InitialOverlap> left;
+    for_known(all_, pairs, name, [&](const InitialOverlap &overlap, const ContactPair &pair) {
+        left.push_back(overlap);
         const double least = contact_settings::least_gap * pair.d_hat;
-        if (overlap.gap < least) overlap.gap = std::min(overlap.gap + length, least);
-    }
-    pairs_ = std::move(left);
+        if (overlap.gap < least) left.back().gap = std::min(overlap.gap + length, least);
+    });
+    all_ = std::move(left);
 }
 
 void InitialOverlaps::activate(const CollisionMesh &mesh, const ContactMaterial &material,
                                const std::vector<ContactPair> &pairs) {
-    for (const ContactPair &pair : pairs) {
-        const auto found = pairs_.find(contact_name(pair));
-        if (found == pairs_.end()) continue;
-        InitialOverlap &overlap = found->second;
+    for_known(all_, pairs, name, [&](InitialOverlap &overlap, const ContactPair &pair) {
         const double stiffness = pair_stiffness(mesh, stencil(mesh, pair, pair.closest), material);
         overlap.activation = activation_distance(overlap.force / stiffness, overlap.gap);
-    }
+    });
 }
 
-const InitialOverlap *InitialOverlaps::find(const ContactPair &pair) const {
-    const auto found = pairs_.find(contact_name(pair));
-    return found != pairs_.end() && found->second.gap < pair.d_hat ? &found->second : nullptr;
+const InitialOverlap *InitialOverlaps::Search::find(const ContactPair &pair) {
+    const auto is_before = [](const InitialOverlap &overlap, uint64_t name) { return overlap.pair < name; };
+    const uint64_t name = contact_name(pair);
+    if (!begun_) left_ = left_.subspan(std::lower_bound(left_.begin(), left_.end(), name, is_before) - left_.begin());
+    begun_ = true;
+    while (!left_.empty() && is_before(left_.front(), name)) left_ = left_.subspan(1);
+    return !left_.empty() && left_.front().pair == name && left_.front().gap < pair.d_hat ? &left_.front() : nullptr;
 }
 
 } // namespace ringlet

@@ -4,12 +4,12 @@
 #include "ringlet/contact/contact.h"
 #include "ringlet/contact/stencil.h"
 
-#include <unordered_map>
 #include <vector>
 
 namespace ringlet {
 
 struct InitialOverlap {
+    uint64_t pair;     // its name
     double gap;        // how close the pair began [m]; grows as it parts
     double force;      // normal force there [N]
     double activation; // distance at which it pushes from now on [m]
@@ -19,10 +19,8 @@ struct InitialOverlap {
 // step. Or it stays, and the pair keeps the normal force that it has there, whatever the stiffness is.
 class InitialOverlaps {
 public:
-    using Pairs = std::unordered_map<uint64_t, InitialOverlap>; // by the name of the pair
-
-    void clear() { pairs_.clear(); }
-    void add(uint64_t pair, double gap, double force) { pairs_[pair] = {gap, force, gap}; }
+    void clear() { all_.clear(); }
+    void add(uint64_t pair, double gap, double force) { all_.push_back({pair, gap, force, gap}); } // in the order of names
 
     void grow(double length);
 
@@ -34,13 +32,23 @@ public:
     // Activates each pair where its normal force balances at the present stiffness.
     void activate(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<ContactPair> &pairs);
 
-    const InitialOverlap *find(const ContactPair &pair) const; // null where it did not overlap, or has parted
+    // Finds pairs, each after the one before in the order of names.
+    class Search {
+    public:
+        explicit Search(View<InitialOverlap> all) : left_(all) {}
+        const InitialOverlap *find(const ContactPair &pair); // null where it did not overlap, or has parted
 
-    const Pairs &pairs() const { return pairs_; }
-    void recall(Pairs pairs) { pairs_ = std::move(pairs); }
+    private:
+        View<InitialOverlap> left_;
+        bool begun_ = false;
+    };
+    Search search() const { return Search(all_); }
+
+    const std::vector<InitialOverlap> &all() const { return all_; } // in the order of names
+    void recall(std::vector<InitialOverlap> all) { all_ = std::move(all); }
 
 private:
-    Pairs pairs_;
+    std::vector<InitialOverlap> all_;
 };
 
 } // namespace ringlet

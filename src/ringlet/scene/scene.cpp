@@ -161,7 +161,7 @@ SceneMemory Scene::memory() const {
     const ContactSet &contacts = data_->objective.contacts;
     return {data_->begun,
             {all.begin() + dynamic_vertices(), all.end()},
-            contacts.overlaps.pairs(),
+            contacts.overlaps.all(),
             contacts.lagged_forces(),
             data_->stiffness.loads(),
             contacts.friction(),

@@ -28,7 +28,7 @@ struct SceneInput {
 struct SceneMemory {
     bool begun = false;
     std::vector<Vec3> bodies; // where their vertices are [m]
-    InitialOverlaps::Pairs overlaps;
+    std::vector<InitialOverlap> overlaps;
     std::vector<LaggedForce> lagged_forces;
     std::vector<double> loads; // of vertices [N]
     std::vector<FrictionState> friction;
