@@ -22,7 +22,7 @@ def run(
     newton: int = 5,
     stiffness: str = "1,0.1",
     rest: str = "none",
-    linear_tolerance: float = 0.2,
+    linear_tolerance: float = 0.4,
     converged: int = 0,
 ) -> dict[str, Any]:
     """Simulates the first frames of an example shot without contact, and with contacts of each stiffness.

@@ -9,7 +9,7 @@ import numpy as np
 from ringlet import Clock, Solver, swing_nest
 
 
-def run(rings: int = 3, newton: int = 5, linear_tolerance: float = 0.2, friction: float = 0.0) -> dict[str, Any]:
+def run(rings: int = 3, newton: int = 5, linear_tolerance: float = 0.4, friction: float = 0.0) -> dict[str, Any]:
     """Swings a nest of equal coils for 8 frames, at these settings and converged.
 
     rings:            of coils about the one in the middle: 1, 3, 5 and 8 are 7, 37, 91 and 217 coils

@@ -39,7 +39,7 @@ def test_coils_keep_nine_tenths_of_their_converged_swing():
 
 def test_a_converged_step_has_nothing_left():
     """The motion that a step has not made, as its last search direction tells, is rounding once it has converged."""
-    few, many = (play([nest.hexagon(1)], Solver(newton=newton))[1] for newton in (2, 100))
+    few, many = (play([nest.hexagon(1)], Solver(newton=newton))[1] for newton in (1, 100))
     few, many = (sum(step["left"] for step in steps) / sum(step["moved"] for step in steps) for steps in (few, many))
-    assert abs(few) > 1e-4
+    assert few > 1e-3
     assert abs(many) < 1e-6

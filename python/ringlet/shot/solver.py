@@ -46,7 +46,7 @@ class Solver(Section):
         "together, as needed",
     )
     linear_tolerance: float = Field(
-        default=0.2,
+        default=0.4,
         gt=0,
         le=0.5,
         description="relative error of the linear solution in the energy norm, with conjugate gradients; 0.02 for "

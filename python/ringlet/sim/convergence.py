@@ -14,7 +14,7 @@ from ringlet.data.convergence import ENOUGH, Convergence, Trial
 from ringlet.sim.garment import moved_rigidly
 from ringlet.sim.motion import Motion
 
-SETTINGS = ((3, 0.2), (5, 0.2), (8, 0.1), (12, 0.05))  # iterations and linear tolerances that are tried
+SETTINGS = ((3, 0.4), (5, 0.4), (8, 0.1), (12, 0.05))  # iterations and linear tolerances that are tried
 CONVERGED = (60, 0.02)
 
 

@@ -45,12 +45,16 @@ public:
 
     void advance(double *) override {
         const int first = begin(), count = end() - first;
-        if (count == 0) return;
         for (int k = 0; k < count; ++k) {
             const double alpha = state_.alpha[object(first + k)];
             load_[k] += alpha * Pp_[k];
             r_[k] -= alpha * (Pp_[k] + objective_.couplings.product(first + k));
         }
+    }
+
+    void precondition() override {
+        const int first = begin(), count = end() - first;
+        if (count == 0) return;
         const AlignedVector z = response(r_);
         for (int k = 0; k < count; ++k) {
             state_.z[first + k] = at(z.data(), first + k);
@@ -155,7 +159,13 @@ public:
         for (size_t i = 0; i < p_.size(); ++i) d[i] += alpha * p_[i];
         for (size_t i = 0; i < p_.size(); ++i) r_[i] -= alpha * Ap_[i];
         for_points([&](int k, size_t i) { Eigen::Map<Vec3>(&r_[i]) -= alpha * objective_.couplings.product(k); });
-        precondition();
+    }
+
+    void precondition() override {
+        z_ = r_;
+        block_.solve(z_.data());
+        lane_dots(r_.data(), z_.data(), block_.rows(), 1, &state_.rz[object()]);
+        for_points([&](int k, size_t i) { state_.z[k] = Eigen::Map<const Vec3>(&z_[i]); });
     }
 
     Vec3 residual(int point) const override { return Eigen::Map<const Vec3>(&r_[entry(point)]); }
@@ -173,13 +183,6 @@ public:
 
 private:
     int object() const { return block_.objects().front().number; }
-
-    void precondition() {
-        z_ = r_;
-        block_.solve(z_.data());
-        lane_dots(r_.data(), z_.data(), block_.rows(), 1, &state_.rz[object()]);
-        for_points([&](int k, size_t i) { state_.z[k] = Eigen::Map<const Vec3>(&z_[i]); });
-    }
 
     template <class Work> void for_points(const Work &work) const { // work(point, entry of the block's vectors)
         const Couplings &couplings = objective_.couplings;

@@ -28,7 +28,8 @@ public:
 
     virtual void first_iterate(double *d) = 0; // d and p: P⁻¹ b where P is exact, else 0
     virtual void search() = 0;                 // p = z + β p, and p · P p
-    virtual void advance(double *d) = 0;       // d += α p, r −= α (P + C) p, z = P⁻¹ r, r · z
+    virtual void advance(double *d) = 0;       // d += α p, r −= α (P + C) p
+    virtual void precondition() = 0;           // z = P⁻¹ r, r · z
     virtual void measure(const double *d) = 0; // b · d
     virtual void finish(double *d) = 0;
 

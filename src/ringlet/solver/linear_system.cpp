@@ -110,7 +110,12 @@ LinearSystem::Result LinearSystem::conjugate_gradient(const LinearSettings &sett
         for (int object = 0; object < objects; ++object) state_.alpha[object] = busy[object] ? alpha[cluster[object]] : 0.0;
 
         // Alternating directions reuse the factors that are still in the cache.
-        for_busy([&](int b) { iterations_[b]->advance(blocks.of(b, direction)); }, result.iterations % 2 != 0);
+        for_busy(
+            [&](int b) {
+                iterations_[b]->advance(blocks.of(b, direction));
+                iterations_[b]->precondition();
+            },
+            result.iterations % 2 != 0);
         deflate(busy);
         const std::vector<double> next = of_clusters(state_.rz);
         for (int c = 0; c < objects; ++c)
@@ -133,19 +138,21 @@ void LinearSystem::first_iterate(AlignedVector &direction) {
     const int objects = objective_.table.objects;
     state_.resize(objects, objective_.couplings.count());
     const std::vector<unsigned char> all(objects, 1);
-    const auto advance = [&](bool backwards) {
+    const auto advance = [&] {
         std::vector<double> unused(objects, 0.0);
         objective_.couplings.multiply(state_.p, objective_.contact_values(), all, unused);
-        blocks.for_active([&](int b) { iterations_[b]->advance(blocks.of(b, direction)); }, backwards);
+        blocks.for_active([&](int b) { iterations_[b]->advance(blocks.of(b, direction)); });
     };
     blocks.for_active([&](int b) { iterations_[b]->first_iterate(blocks.of(b, direction)); });
     state_.alpha.assign(objects, 1.0);
-    advance(true);
-    if (coarse_.empty()) return;
-    coarse_.project(
-        [&](int point) { return iterations_[blocks.block_of(objective_.couplings.object(point))]->residual(point); });
-    blocks.for_active([&](int b) { iterations_[b]->correct(); });
-    advance(false);
+    advance();
+    if (!coarse_.empty()) {
+        coarse_.project(
+            [&](int point) { return iterations_[blocks.block_of(objective_.couplings.object(point))]->residual(point); });
+        blocks.for_active([&](int b) { iterations_[b]->correct(); });
+        advance();
+    }
+    blocks.for_active([&](int b) { iterations_[b]->precondition(); }, true); // the last factors are still in the cache
     deflate(all);
 }
 

@@ -23,7 +23,7 @@ struct CoupledError : std::invalid_argument {
 
 struct LinearSettings {
     System system = System::automatic;
-    double tolerance = 0.2;                                      // of the error, relative, in the norm of energy
+    double tolerance = 0.4;                                      // of the error, relative, in the norm of energy
     int max_iterations = solver_settings::max_linear_iterations; // of conjugate gradients
 };
 

@@ -13,8 +13,8 @@ inline constexpr double bound_margin = 0.2;     // of the radius of strands
 
 // Damping of relative motion (Levenberg 1944), as a part of the stiffness of contacts: it comes to nothing, so that the
 // solution is that of the objective
-inline constexpr double first_damping = 0.1;
-inline constexpr double damping_decay = 0.5;
+inline constexpr double first_damping = 0.2;
+inline constexpr double damping_decay = 0.35;
 inline constexpr double least_damping = 1e-3;
 
 // Search path
@@ -37,7 +37,7 @@ inline constexpr double coarse_rounding = 1e-10; // of the largest diagonal entr
 
 // Conjugate gradients
 inline constexpr int error_delay = 2;           // iterations by which the estimate of the error comes late
-inline constexpr double residual_share = 0.5;   // of the tolerance: what is left of a residual, where that decides
+inline constexpr double residual_share = 0.25;  // of the tolerance: what is left of a residual, where that decides
 inline constexpr double loose_tolerance = 0.05; // from there on, small clusters get at most
 inline constexpr int max_loose_iterations = 8;
 
