@@ -1,6 +1,6 @@
 """Makes docs/images/swing.webp: the nod of the example at two settings of the solver, side by side.
 
-python docs/swing_movie.py play 5/0.2 NOW.npz     in the checkout of either version
+python docs/swing_movie.py play 5/0.4 NOW.npz     in the checkout of either version
 python docs/swing_movie.py draw "before=BEFORE.npz" "now=NOW.npz"
 """
 
