@@ -111,7 +111,7 @@ void ContactSet::commit_friction(View<Vec3> positions) {
     }
 }
 
-// What add(pair, its initial overlap or null, list) appends for each pair.
+// Concatenates what add(pair, its initial overlap or null, list) appends for each pair.
 template <class T, class Add>
 std::vector<T> ContactSet::collect_of_pairs(const std::vector<ContactPair> &pairs, const Add &add) const {
     return collect_ranges<T>(int(pairs.size()), [&](int begin, int end, std::vector<T> &list) {
