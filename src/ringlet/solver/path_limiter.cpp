@@ -22,13 +22,15 @@ std::vector<double> fractions_left(const BlockSet &blocks, View<Vec3> now, View<
     return left;
 }
 
-// Sets where a path leads, with the apexes of the triangles that hold it; `end` is scratch memory, a copy of x.
+// Sets where the paths of some objects lead, with the apexes of the triangles that hold them; `end` is scratch memory, a copy
+// of x.
 void set_end_of_path(const BlockSet &blocks, const VertexTable &table, View<Vec3> now, const AlignedVector &x,
-                     const SearchPath &path, AlignedVector &end, std::vector<Vec3> &to, std::vector<Vec3> &apex) {
-    move_along(blocks, x, std::vector<double>(table.objects, 1.0), path, std::vector<unsigned char>(table.objects, 1), end);
+                     const SearchPath &path, const std::vector<unsigned char> &objects, AlignedVector &end,
+                     std::vector<Vec3> &to, std::vector<Vec3> &apex) {
+    move_along(blocks, x, std::vector<double>(table.objects, 1.0), path, objects, end);
 #pragma omp parallel for schedule(static)
     for (int v = 0; v < table.dynamic_vertices; ++v) {
-        if (!table.mesh.moves[v]) continue;
+        if (!table.mesh.moves[v] || !objects[table.mesh.object[v]]) continue;
         to[v] = blocks.position(end, v);
         apex[v] = now[v] + 0.5 * blocks.position(path.straight, v); // of a parabola, the tangents' intersection
     }
@@ -63,7 +65,7 @@ PlannedMove limit_path(const Objective &objective, Configuration &configuration,
     AlignedVector end = x.copy();
     std::vector<Vec3> wanted = now;
     PlannedMove move{{}, now};
-    set_end_of_path(blocks, table, now, x, path, end, wanted, move.apex);
+    set_end_of_path(blocks, table, now, x, path, blocks.active_objects(), end, wanted, move.apex);
     move.to = wanted;
     configuration.limit(move, {.whole = true, .lasts = lasts}, report);
 
@@ -77,7 +79,7 @@ PlannedMove limit_path(const Objective &objective, Configuration &configuration,
     straighten(blocks, straight, path);
     shorten(blocks, left, path);
 
-    set_end_of_path(blocks, table, now, x, path, end, wanted, move.apex);
+    set_end_of_path(blocks, table, now, x, path, limited, end, wanted, move.apex);
 #pragma omp parallel for schedule(static)
     for (int v = 0; v < table.dynamic_vertices; ++v)
         if (table.mesh.moves[v] && limited[table.mesh.object[v]]) changed[v] = 1, move.to[v] = wanted[v];
