@@ -4,6 +4,7 @@
 #include "ringlet/strand/rod_objective.h"
 
 #include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
 #include <boost/test/unit_test.hpp>
 #include <random>
 #include <vector>
@@ -246,7 +247,7 @@ BOOST_AUTO_TEST_CASE(with_its_curvature_the_hessian_is_that_along_a_rotation) {
         };
         objective.assemble(gradient.data(), hessian);
         const double gauss_newton = second();
-        objective.add_path_curvature(1.0, hessian);
+        objective.assemble_along_paths(gradient.data(), hessian, 1.0, [](int, int, double) {}, [](int) {});
         const auto along = [&](double step) {
             objective.curved_path(strand.x.data(), step, strand.direction.data(), to.data());
             return objective.energy(to.data());
@@ -255,6 +256,43 @@ BOOST_AUTO_TEST_CASE(with_its_curvature_the_hessian_is_that_along_a_rotation) {
         BOOST_TEST(std::abs(second() - difference) < 1e-4 * std::abs(difference)); // frames are regularised by 1e-5
         BOOST_TEST(std::abs(gauss_newton - difference) > 0.01 * std::abs(difference));
     }
+}
+
+// Where the curvature of paths would leave too little of it, the Hessian is the one without.
+BOOST_AUTO_TEST_CASE(the_hessian_along_paths_is_definite_or_without_their_curvature) {
+    int with_curvature = 0;
+    for (int seed = 0; seed < 20; ++seed) {
+        RotatingStrand strand(seed, 1.0);
+        for (int i = 0; seed % 2 && i < vertices; ++i) { // without loads, against a large inertia
+            strand.rows[i].inertia *= 1e3;
+            strand.rows[i].inertia_target = position_of(strand.x, i);
+        }
+        RodObjective<double> objective(vertices, strand.rows.data(), strand.shapes.data());
+        objective.evaluate(strand.x.data());
+        const int size = objective.size();
+        const size_t entries = RodObjective<double>::Matrix::entries(size);
+        std::vector<double> gradient(size), without(entries), with(entries), got(entries);
+        RodObjective<double>::Matrix plain(without.data(), size), curved(with.data(), size), hessian(got.data(), size);
+        objective.assemble(gradient.data(), plain);
+        objective.assemble_along_paths(gradient.data(), curved, 1.0, [](int, int, double) {}, [](int) {});
+        double used = 1.0;
+        objective.assemble(gradient.data(), hessian, used);
+        BOOST_TEST(got == (used == 1.0 ? with : without), boost::test_tools::per_element());
+        // Least part of the matrix without curvature that is left in some direction, by dense algebra.
+        const auto dense = [&](RodObjective<double>::Matrix &matrix) {
+            Eigen::MatrixXd all = Eigen::MatrixXd::Zero(size, size);
+            for (int c = 0; c < size; ++c)
+                for (int k = 0; k < std::min(RodObjective<double>::Matrix::rows(c), size - c); ++k)
+                    all(c, c + k) = all(c + k, c) = matrix.entry(c)[k];
+            return all;
+        };
+        const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> left(dense(curved), dense(plain));
+        const double least = left.eigenvalues().minCoeff();
+        BOOST_TEST(used == (least > RodObjective<double>::curvature_reserve ? 1.0 : 0.0));
+        with_curvature += int(used);
+    }
+    BOOST_TEST(with_curvature > 0);
+    BOOST_TEST(with_curvature < 20);
 }
 
 BOOST_AUTO_TEST_CASE(the_largest_step_changes_an_edge_by_twice_its_length) {

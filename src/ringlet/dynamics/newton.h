@@ -2,10 +2,9 @@
 // It knows objectives, not hair. An objective offers
 //   int size()                                        unknowns
 //   T evaluate(const T *x)                            energy of every lane at x; keeps what assemble needs
-//   void assemble(T *gradient, Objective::Matrix &)   at the x evaluated last; the Hessian positive definite
-//   void add_path_curvature(T weight, Objective::Matrix &)
-//                                                     adds what a curved path adds to it, where there is any
-//                                                     (has_path_curvature); the sum may be indefinite
+//   void assemble(T *gradient, Objective::Matrix &, T &curved)
+//                                                     at the x evaluated last; the Hessian positive definite, and along
+//                                                     curved paths in lanes where that is 1: set to 0 where it cannot be
 //   T max_step(const T *x, const T *direction)        largest step to try, at most 1
 //   void curved_path(const T *x, T step, const T *direction, T *to)
 //                                                     the point at `step` of its path, x + step · direction to first order
@@ -17,8 +16,6 @@
 #include "ringlet/math/pack.h"
 
 namespace ringlet::RINGLET_SIMD {
-
-inline constexpr double curvature_reserve = 0.1; // least part of the matrix as assembled that the Hessian keeps
 
 struct NewtonSettings {
     int iterations;    // at most
@@ -38,20 +35,6 @@ template <class T> struct NewtonMemory {
     T *trial, *gradient, *direction, *band;
 };
 
-// Gradient and Hessian, with the curvature of paths in those lanes where it is `used`. A lane begins a step with 1. It goes on
-// with 0 once less than a tenth of the matrix as assembled would be left in some direction: nearly singular matrices give
-// directions that are long and lead nowhere.
-template <class T, class Objective>
-void assemble_with_curvature(Objective &objective, T *gradient, typename Objective::Matrix &hessian, T &used) {
-    objective.assemble(gradient, hessian);
-    if constexpr (Objective::has_path_curvature) {
-        const T tried = used * (1.0 / (1.0 - curvature_reserve));
-        objective.add_path_curvature(tried, hessian);
-        used *= hessian.is_definite();
-        objective.add_path_curvature(used - tried, hessian);
-    }
-}
-
 // Never inlined: the compiler has a budget for a file, and the objective's terms need it more.
 template <class T, class Objective>
 [[gnu::noinline]] NewtonResult<T> newton(Objective &objective, T *x, const NewtonSettings &settings,
@@ -62,10 +45,10 @@ template <class T, class Objective>
     typename Objective::Matrix hessian(memory.band, size);
     NewtonResult<T> result{objective.evaluate(x), T{}, T{}, T{}};
     T active = one; // 1 while a lane still moves, else 0
-    T curvature = one;
+    T curved = one;
 
     for (int iteration = 0; iteration < settings.iterations; ++iteration) {
-        assemble_with_curvature(objective, memory.gradient, hessian, curvature);
+        objective.assemble(memory.gradient, hessian, curved);
         hessian.factor();
         for (int i = 0; i < size; ++i) memory.direction[i] = -memory.gradient[i];
         hessian.solve(memory.direction);

@@ -4,9 +4,7 @@
 
 #include "ringlet/linear/band_layout.h"
 #include "ringlet/math/pack.h"
-
-#include <algorithm>
-#include <utility>
+#include "ringlet/math/unroll.h"
 
 namespace ringlet::RINGLET_SIMD {
 
@@ -36,37 +34,21 @@ public:
     template <int terms, int count> void add_squares(int first, T coefficient, const T (&u)[terms][count]) {
         static_assert(count <= band);
         T *from = entry(first);
-        for (int c = 0; c < count; ++c) {
-            T *column = from + layout.begin(c);
-            T weight[terms];
+        unroll<0, count>([&](auto c) {
+            T *column = from + layout.begin(c), weight[terms];
             for (int k = 0; k < terms; ++k) weight[k] = coefficient * u[k][c];
-            for (int r = c; r < count; ++r) {
+            unroll<c, count>([&](auto r) {
                 T sum = column[r - c];
                 for (int k = 0; k < terms; ++k) sum += weight[k] * u[k][r];
                 column[r - c] = sum;
-            }
-        }
+            });
+        });
     }
 
     // Factors in place: A = L D Lᵀ; entry(c)[0] becomes 1/D, the rest L. The columns below a block are updated once for all
     // columns of the block.
     void factor() {
-        for (int first = 0; first < columns_; first += block) eliminate(entry(first));
-    }
-
-    // 1 in lanes where A is positive definite, else 0. Before factor().
-    T is_definite() const {
-        constexpr int count = entries(block), step = int(layout.begin(block)); // of the columns that one block's affect
-        T window[count], definite{};
-        definite += 1.0;
-        std::copy_n(entries_, count, window);
-        for (int first = 0;; first += block) {
-            eliminate(window);
-            each([&](auto c) { definite = select(window[layout.begin(c)] > 0.0, definite, T{}); });
-            if (first + block >= columns_) return definite;
-            std::copy(window + step, window + count, window);
-            std::copy_n(entries_ + layout.begin(first + block) + (count - step), step, window + (count - step));
-        }
+        for (int first = 0; first < columns_; first += block) eliminate<true>(entry(first));
     }
 
     // Solves A x = b in place, after factor(); b has `padding` extra entries behind its last. The `band` values in use stay in
@@ -77,7 +59,7 @@ public:
         for (int k = 0; k < band; ++k) near[k] = b[k];
         for (int first = 0; first < columns_; first += block) {
             const T *from = entries_ + layout.begin(first);
-            each([&](auto c) {
+            unroll<0, block>([&](auto c) {
                 const T *column = from + layout.begin(c);
                 const T value = near[0];
                 for (int k = 1; k < band; ++k) near[k - 1] = k < rows(c) ? near[k] - column[k] * value : near[k];
@@ -88,7 +70,7 @@ public:
         for (int k = 0; k < band; ++k) near[k] = T{};
         for (int first = columns_ - block; first >= 0; first -= block) {
             const T *from = entries_ + layout.begin(first);
-            each([&](auto before) {
+            unroll<0, block>([&](auto before) {
                 constexpr int c = block - 1 - before;
                 const T *column = from + layout.begin(c);
                 T value = b[first + c];
@@ -99,11 +81,11 @@ public:
         }
     }
 
-private:
-    // Eliminates the columns of the block that begins at `from`.
-    static void eliminate(T *from) {
+    // Eliminates the columns of the block that begins at `from`: subtracts what they add to the columns behind, and with
+    // `factors` leaves their part of the factorisation.
+    template <bool factors> static void eliminate(T *from) {
         T scaled[block][band];
-        each([&](auto c) {
+        unroll<0, block>([&](auto c) {
             constexpr int count = rows(c);
             T *pivot = from + layout.begin(c);
             const T inverse = 1.0 / pivot[0];
@@ -114,28 +96,61 @@ private:
                 for (int r = k; r < count; ++r) column[r - k] -= scaled[c][k] * pivot[r];
             }
         });
-        for (int k = block; k < band; ++k) {
+        unroll<block, band>([&](auto k) {
             T *column = from + layout.begin(k);
-            for (int r = k; r < band; ++r) {
+            unroll<k, band>([&](auto r) {
                 T sum = column[r - k];
-                each([&](auto c) { sum -= scaled[c][k - c] * from[layout.begin(c) + r - c]; });
+                unroll<0, block>([&](auto c) { sum -= scaled[c][k - c] * from[layout.begin(c) + r - c]; });
                 column[r - k] = sum;
-            }
-        }
-        each([&](auto c) {
-            for (int k = 0; k < rows(c); ++k) from[layout.begin(c) + k] = scaled[c][k];
+            });
         });
+        if constexpr (factors)
+            unroll<0, block>([&](auto c) {
+                for (int k = 0; k < rows(c); ++k) from[layout.begin(c) + k] = scaled[c][k];
+            });
     }
 
-    // Calls work(0), work(1) … for the columns of a block, as constants.
-    template <class Work> static void each(const Work &work) {
-        [&]<int... c>(std::integer_sequence<int, c...>) {
-            (work(std::integral_constant<int, c>{}), ...);
-        }(std::make_integer_sequence<int, block>{});
-    }
-
+private:
     T *entries_;
     int columns_;
+};
+
+// Tells where a banded matrix is positive definite while it is assembled, block after block: each is eliminated as soon as it
+// is complete, in a window of the columns that this affects.
+template <class Matrix, class T> class DefinitenessTest {
+    static constexpr auto layout = Matrix::layout;
+    static constexpr int block = layout.block, live = Matrix::padding / block, blocks = 8;
+    static constexpr int entries = int(layout.begin(block)); // of a block's columns
+    static_assert(live < blocks);
+
+public:
+    // What is added here is tested, and is no part of the matrix. Columns: of the `live` blocks that are completed next.
+    T *entry(int column) { return window_ + (layout.begin(column) - first_); }
+
+    // The next block of the matrix is complete.
+    void complete(const T *of_matrix) {
+        T *from = window_ + position_ * entries;
+        for (int k = 0; k < entries; ++k) from[k] += of_matrix[k];
+        Matrix::template eliminate<false>(from);
+        for (int c = 0; c < block; ++c) definite_ = select(from[layout.begin(c)] > 0.0, definite_, T{});
+        if (++position_ + live > blocks) move_to_front();
+    }
+
+    T definite() const { return definite_; } // 1 in lanes where each complete block is, else 0
+
+private:
+    void move_to_front() {
+        const int kept = (live - 1) * entries, from = position_ * entries;
+        for (int k = 0; k < kept; ++k) window_[k] = window_[from + k];
+        for (int k = kept; k < blocks * entries; ++k) window_[k] = T{};
+        first_ += size_t(from);
+        position_ = 0;
+    }
+
+    T window_[blocks * entries] = {};
+    size_t first_ = 0; // entry of the matrix at which the window begins
+    int position_ = 0; // block of the window that is completed next
+    T definite_ = constant<T>(1.0);
 };
 
 } // namespace ringlet::RINGLET_SIMD

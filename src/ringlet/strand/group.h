@@ -96,7 +96,7 @@ public:
     void assemble(const double *x) override {
         Matrix hessian = strands_.matrix();
         strands_.objective.relocate(packs(x));
-        assemble_with_curvature(strands_.objective, strands_.memory.newton.gradient, hessian, curvature_);
+        strands_.objective.assemble(strands_.memory.newton.gradient, hessian, curved_);
     }
     void factor() override { strands_.matrix().factor(); }
     void solve(double *b) override { strands_.matrix().solve(packs(b)); }
@@ -121,7 +121,7 @@ private:
 
     GatheredGroup<Objective> strands_;
     TimeIntegrator<Pack> integrator_;
-    Pack curvature_ = constant<Pack>(1.0); // of paths, where the Hessian has it
+    Pack curved_ = constant<Pack>(1.0); // 1 in lanes whose Hessian is that along curved paths
 };
 
 } // namespace ringlet::RINGLET_SIMD

@@ -56,13 +56,16 @@ public:
 
     T energy(const T *x) { return evaluate(x); }
 
+    void assemble(T *gradient, Matrix &hessian, T &) const { assemble(gradient, hessian); }
     void assemble(T *gradient, Matrix &hessian) const {
         this->assemble_terms(
-            gradient, hessian, [&](int i) { add_bend(i, gradient, hessian); }, [&](int i) { add_twist(i, gradient, hessian); });
-        this->clear_held(gradient);
+            gradient, hessian,
+            [&](int last) {
+                if (last > 1) add_bend(last - 1, gradient, hessian);
+                if (last > 2) add_twist(last - 2, gradient, hessian);
+            },
+            [](int) {});
     }
-
-    void add_path_curvature(T, Matrix &) const {}
 
     Strains<T> strains(int i) const {
         const StrandShape<T> &s = shapes_[i];

@@ -10,6 +10,8 @@
 #include "ringlet/strand/kernel.h"
 #include "ringlet/strand/vertex_data.h"
 
+#include <algorithm>
+
 namespace ringlet::RINGLET_SIMD {
 
 // `dofs_` unknowns per vertex, the first three its position.
@@ -17,7 +19,6 @@ template <class T, int dofs_, int band> class StrandObjective {
 public:
     static constexpr int dofs = dofs_;
     static constexpr bool has_frames = dofs == 4;
-    static constexpr bool has_path_curvature = has_frames;
     using Matrix = Banded<T, dofs, band>;
 
     StrandObjective(int vertices, StrandRow<T> *rows, StrandShape<T> *shapes, Safeguards safeguards = {})
@@ -72,16 +73,22 @@ protected:
         return stretch_energy(shape.length, rows_[i].damped_length, rows_[i].stretch_stiffness);
     }
 
-    // Gradient and Hessian of inertia and stretch; calls add_bend(i) and add_twist(i) for corners and hinges. A term follows
-    // the last of its vertices, while its rows of the matrix are in cache.
-    template <class AddBend, class AddTwist>
-    void assemble_terms(T *gradient, Matrix &hessian, const AddBend &add_bend, const AddTwist &add_twist) const {
+    // Gradient and Hessian of inertia and stretch. Calls add_others(last) for the other terms whose last vertex that is, while
+    // its rows of the matrix are in cache, and complete(i) once all terms of vertex i are there.
+    template <class AddOthers, class Complete>
+    void assemble_terms(T *gradient, Matrix &hessian, const AddOthers &add_others, const Complete &complete) const {
+        constexpr int reach = Matrix::padding / dofs - 1; // of a term, in vertices behind its first
+        const auto finish = [&](int i) {
+            for (int k = 0; k < 3; ++k) gradient[dofs * i + k] *= rows_[i].free;
+            complete(i);
+        };
         for (int last = 0; last < vertices_; ++last) {
             begin_vertex(last, gradient, hessian);
             if (last > 0) add_stretch(last - 1, gradient, hessian);
-            if (last > 1) add_bend(last - 1);
-            if (last > 2) add_twist(last - 2);
+            add_others(last);
+            if (last >= reach) finish(last - reach);
         }
+        for (int i = std::max(0, vertices_ - reach); i < vertices_; ++i) finish(i);
         hessian.set_zero(size(), size() + Matrix::padding);
     }
 
@@ -111,11 +118,6 @@ protected:
     // Number of the edge's negative eigenvalues, which its Hessian leaves out: two across a compressed edge.
     T clamped_stretch(int i) const {
         return select(shapes_[i].length < (1.0 - clamped_from) * rows_[i].damped_length, constant<T>(2.0), T{});
-    }
-
-    void clear_held(T *gradient) const {
-        for (int i = 0; i < vertices_; ++i)
-            for (int k = 0; k < 3; ++k) gradient[dofs * i + k] *= rows_[i].free;
     }
 
     static void add(T *gradient, int vertex, Vec<T> value) {

@@ -7,34 +7,44 @@
 // forces of contacts, which cancel where neighbours rotate together. (Geometric stiffness of rods: Simo & Vu-Quoc 1986.)
 #pragma once
 
-#include "ringlet/energy/strand/frame.h"
 #include "ringlet/energy/strand/stretch.h"
+#include "ringlet/math/unroll.h"
 #include "ringlet/strand/curved_path.h"
 #include "ringlet/strand/vertex_data.h"
 
 namespace ringlet::RINGLET_SIMD {
 
-template <class T, class Matrix> class PathCurvature {
-public:
-    // Of what was evaluated at x.
-    PathCurvature(int vertices, const StrandRow<T> *rows, const StrandShape<T> *shapes, const T *x)
-        : vertices_(vertices), rows_(rows), shapes_(shapes), x_(x) {}
+// What vertices behind an edge add up to: F, and how many of them are held.
+template <class T> struct LoadBehind {
+    Vec<T> force{};
+    T held{};
 
-    // Adds the terms, times `weight`, of edges whose vertices behind are all free: between held vertices paths are closed
-    // otherwise.
-    void add_to(Matrix &hessian, T weight) const {
-        Vec<T> load{};
-        EdgeSpin after{};
-        for (int i = vertices_ - 2; i >= 0; --i) {
-            const T free = rows_[i + 1].free;
-            const auto closed = (free == 0.0) & (rows_[i].stretch_stiffness > 0.0); // behind the tip nothing is
-            weight = select(closed, T{}, weight);
-            load = free * (load + load_of(i + 1));
-            const EdgeSpin spin = spin_of(i);
-            add_edge(i, spin, weight, load, hessian);
-            if (i + 2 < vertices_) add_corner(i + 1, spin, after, weight, hessian);
-            after = spin;
-        }
+    void add(const StrandRow<T> *rows, const T *x, int i, double sign) {
+        const Vec<T> at{x[4 * i], x[4 * i + 1], x[4 * i + 2]};
+        force = force + (sign * rows[i].free * rows[i].inertia) * (at - rows[i].inertia_target);
+        if (i == 0) return;
+        const auto is_held = (rows[i].free == 0.0) & (rows[i - 1].stretch_stiffness > 0.0); // behind the tip nothing is
+        held += select(is_held, constant<T>(sign), T{});
+    }
+};
+
+// Takes edges and corners in order, from the root to the tip.
+template <class T> class PathCurvature {
+public:
+    // Of what was evaluated at x; `load`: of all vertices.
+    PathCurvature(const StrandRow<T> *rows, const StrandShape<T> *shapes, const T *x, const LoadBehind<T> &load)
+        : rows_(rows), shapes_(shapes), x_(x), load_(load) {}
+
+    // Calls add(column, rows below, value) for edge i, whose director has that spin, and for the corner before it, which has
+    // that moment. Only where all vertices behind are free: between held vertices paths are closed otherwise.
+    template <class Add> void add(int i, Vec<T> director_spin, Vec<T> moment, T weight, const Add &add) {
+        load_.add(rows_, x_, i, -1.0);
+        weight = select(load_.held > 0.5, T{}, weight);
+        const EdgeSpin spin = spin_of(i, director_spin);
+        add_edge(i, spin, weight, add);
+        if (i > 0) add_corner(i, before_, spin, weight_before_ * moment, add);
+        before_ = spin;
+        weight_before_ = weight;
     }
 
 private:
@@ -44,11 +54,11 @@ private:
         T about_by_frame;
     };
 
-    EdgeSpin spin_of(int i) const {
+    EdgeSpin spin_of(int i, Vec<T> director_spin) const {
         const StrandShape<T> &s = shapes_[i];
         EdgeSpin r;
         const T share = rows_[i].frame_free * rotation_share(rows_, i);
-        r.about = share * spin(rows_[i].reference.tangent, s.tangent, s.length);
+        r.about = share * director_spin;
         r.about_by_frame = share / rows_[i].rest_length;
         r.by_frame = r.about_by_frame * s.tangent;
         const Vec<T> t = (1.0 / s.length) * s.tangent;
@@ -58,77 +68,63 @@ private:
         return r;
     }
 
-    Vec<T> load_of(int i) const {
-        const Vec<T> at{x_[4 * i], x_[4 * i + 1], x_[4 * i + 2]};
-        return rows_[i].inertia * (at - rows_[i].inertia_target);
-    }
-
     // Across the edge the tension of its load takes the place of that of its stretch where it is larger. An edge that the
     // limiter has left stretched so keeps that stiffness, without which the next iteration stretches it further.
-    void add_edge(int i, const EdgeSpin &spin, T weight, Vec<T> load, Matrix &hessian) const {
+    template <class Add> void add_edge(int i, const EdgeSpin &spin, T weight, const Add &add) const {
         const StrandShape<T> &s = shapes_[i];
+        const Vec<T> load = load_.force;
         const T stretch = stretch_across(s.length, rows_[i].damped_length, rows_[i].stretch_stiffness);
         const T across = weight * max(-dot(load, s.tangent) / s.length - stretch, T{});
         const Vec<T> twisting = (0.5 * weight) * cross(load, s.tangent), t = s.tangent;
         const T a = rows_[i].free, b = rows_[i + 1].free;
-        for (int c = 0; c < 3; ++c) {
-            T *before = hessian.entry(4 * i + c), *after = hessian.entry(4 * i + 4 + c);
-            for (int r = 0; r < 3; ++r) {
+        unroll<0, 3>([&](auto c) {
+            const int before = 4 * i + c, after = before + 4;
+            unroll<0, 3>([&](auto r) {
                 T value = spin.about[r] * twisting[c] + twisting[r] * spin.about[c] - across * t[r] * t[c];
                 if (r == c) value += across;
-                if (r >= c) before[r - c] += a * value, after[r - c] += b * value;
-                before[4 + r - c] -= a * b * value;
-            }
-            before[3 - c] -= a * spin.about_by_frame * twisting[c];
-            hessian.entry(4 * i + 3)[1 + c] += b * spin.about_by_frame * twisting[c];
-        }
+                if (r >= c) {
+                    add(before, r - c, a * value);
+                    add(after, r - c, b * value);
+                }
+                add(before, 4 + r - c, -(a * b * value));
+            });
+            add(before, 3 - c, -(a * spin.about_by_frame * twisting[c]));
+            add(4 * i + 3, 1 + c, b * spin.about_by_frame * twisting[c]);
+        });
     }
 
-    // Moment of bend at corner i, and of twist across it, on the edge before [N m].
-    Vec<T> moment(int i) const {
-        const StrandShape<T> &before = shapes_[i - 1], &s = shapes_[i];
-        const StrandRow<T> &row = rows_[i];
-        const Vec<T> bending = (row.bend_stiffness * (s.curvature1 - row.damped_curvature1)) * s.director +
-                               (row.bend_stiffness * (s.curvature2 - row.damped_curvature2)) * cross(s.tangent, s.director);
-        Vec<T> by_edge = turning_gradient(s.corner, before.tangent, s.tangent, before.length, s.length, bending).first;
-        T twisting{};
-        if (i > 1) {
-            twisting = rows_[i - 1].twist_stiffness * (before.strain - rows_[i - 1].damped_strain);
-            const auto g = frame_twist_gradient(s.corner, before.tangent, s.tangent, before.length, s.length);
-            by_edge = by_edge + twisting * g.first;
-        }
-        return before.length * cross(before.tangent, by_edge) - twisting * before.tangent;
-    }
-
-    void add_corner(int i, const EdgeSpin &first, const EdgeSpin &second, T weight, Matrix &hessian) const {
-        const Vec<T> half = (0.5 * weight) * moment(i), by_frame = cross(half, first.by_frame);
+    template <class Add>
+    void add_corner(int i, const EdgeSpin &first, const EdgeSpin &second, Vec<T> moment, const Add &add) const {
+        const Vec<T> half = constant<T>(0.5) * moment, by_frame = cross(half, first.by_frame);
         T by_edges[3][3]; // rows: the first
         for (int r = 0; r < 3; ++r)
             for (int c = 0; c < 3; ++c) by_edges[r][c] = dot(cross(half, first.by_edge[r]), second.by_edge[c]);
         const T a = rows_[i - 1].free, b = rows_[i].free, d = rows_[i + 1].free;
-        T *frame = hessian.entry(4 * (i - 1) + 3);
-        for (int c = 0; c < 3; ++c) {
-            T *column0 = hessian.entry(4 * (i - 1) + c), *column1 = hessian.entry(4 * i + c);
-            for (int r = 0; r < 3; ++r) {
-                column0[4 + r - c] += a * b * by_edges[c][r];
-                column0[8 + r - c] -= a * d * by_edges[c][r];
-                if (r >= c) column1[r - c] -= b * (by_edges[r][c] + by_edges[c][r]);
-                column1[4 + r - c] += b * d * by_edges[c][r];
-            }
+        const int frame = 4 * i - 1;
+        unroll<0, 3>([&](auto c) {
+            const int column0 = 4 * (i - 1) + c, column1 = 4 * i + c;
+            unroll<0, 3>([&](auto r) {
+                add(column0, 4 + r - c, a * b * by_edges[c][r]);
+                add(column0, 8 + r - c, -(a * d * by_edges[c][r]));
+                if (r >= c) add(column1, r - c, -(b * (by_edges[r][c] + by_edges[c][r])));
+                add(column1, 4 + r - c, b * d * by_edges[c][r]);
+            });
             const T of_first = dot(cross(half, first.by_edge[c]), second.by_frame),
                     of_second = dot(by_frame, second.by_edge[c]);
-            column0[7 - c] -= a * of_first;
-            column1[3 - c] += b * of_first;
-            frame[1 + c] -= b * of_second;
-            frame[5 + c] += d * of_second;
-        }
-        frame[4] += dot(by_frame, second.by_frame);
+            add(column0, 7 - c, -(a * of_first));
+            add(column1, 3 - c, b * of_first);
+            add(frame, 1 + c, -(b * of_second));
+            add(frame, 5 + c, d * of_second);
+        });
+        add(frame, 4, dot(by_frame, second.by_frame));
     }
 
-    int vertices_;
     const StrandRow<T> *rows_;
     const StrandShape<T> *shapes_;
     const T *x_;
+    LoadBehind<T> load_; // of the present edge
+    EdgeSpin before_{};  // of the edge before
+    T weight_before_{};
 };
 
 } // namespace ringlet::RINGLET_SIMD

@@ -19,6 +19,8 @@ public:
     using Base::Base;
     using typename Base::Matrix;
 
+    static constexpr double curvature_reserve = 0.1;
+
     // Evaluates at the start of the step.
     T begin(const T *x) { return evaluate(x); }
 
@@ -31,21 +33,50 @@ public:
     T energy(const T *x) { return energy_at<false>(x); }
 
     void assemble(T *gradient, Matrix &hessian) const {
+        AddedTerms terms;
         this->assemble_terms(
-            gradient, hessian, [&](int i) { add_bend(i, gradient, hessian); }, [&](int i) { add_twist(i, gradient, hessian); });
-        for (int i = 0; i < vertices_; ++i) { // regularises a frame without stiffness
-            const T free = rows_[i].frame_free;
-            const T bend = rows_[i].bend_stiffness / (rows_[i].rest_length * rows_[i].rest_length);
-            const T least = max(strand_settings::frame_stiffness * bend, constant<T>(strand_settings::frame_stiffness_min));
-            hessian.entry(4 * i + 3)[0] += free * least + (1.0 - free);
-        }
-        this->clear_held(gradient);
-        for (int i = 0; i < vertices_; ++i) gradient[4 * i + 3] *= rows_[i].frame_free;
+            gradient, hessian, [&](int last) { add_terms(last, gradient, hessian, terms); },
+            [&](int i) { finish_frame(i, gradient, hessian); });
     }
 
-    // Adds the curvature of paths to the matrix as assembled, times `weight`. The sum may be indefinite.
-    void add_path_curvature(T weight, Matrix &hessian) const {
-        PathCurvature<T, Matrix>(vertices_, rows_, shapes_, this->positions_).add_to(hessian, weight);
+    // The same, along curved paths in those lanes where that is 1. It becomes 0 where less than `curvature_reserve` of the
+    // matrix without their curvature would be left in some direction: nearly singular matrices give directions that are long
+    // and lead nowhere.
+    void assemble(T *gradient, Matrix &hessian, T &curved) const {
+        DefinitenessTest<Matrix, T> test;
+        assemble_along_paths(
+            gradient, hessian, curved,
+            [&](int column, int below, T value) {
+                test.entry(column)[below] += curvature_reserve / (1.0 - curvature_reserve) * value;
+            },
+            [&](int i) { test.complete(hessian.entry(4 * i)); });
+        const T kept = curved * test.definite();
+        if (!any(kept != curved)) return;
+        curved = kept;
+        assemble(gradient, hessian, curved);
+    }
+
+    // The same without that test: the matrix may be indefinite. Calls also(column, rows below, value) for what is added for
+    // curved paths, and complete(i) once all of vertex i's columns are there.
+    template <class Also, class Complete>
+    void assemble_along_paths(T *gradient, Matrix &hessian, T curved, const Also &also, const Complete &complete) const {
+        AddedTerms terms;
+        PathCurvature<T> curvature(rows_, shapes_, this->positions_, load_);
+        const auto add = [&](int column, int below, T value) {
+            hessian.entry(column)[below] += value;
+            also(column, below, value);
+        };
+        this->assemble_terms(
+            gradient, hessian,
+            [&](int last) {
+                add_terms(last, gradient, hessian, terms);
+                if (last > 0)
+                    curvature.add(last - 1, terms.spin, last > 1 ? terms.moment(shapes_[last - 2]) : Vec<T>{}, curved, add);
+            },
+            [&](int i) {
+                finish_frame(i, gradient, hessian);
+                complete(i);
+            });
     }
 
     Strains<T> strains(int i) const {
@@ -78,9 +109,11 @@ private:
     // One pass, which reads each row once and writes shapes only where they are kept.
     template <bool keeps> T energy_at(const T *x) {
         T energy{};
+        LoadBehind<T> load;
         StrandShape<T> before{}, s{}; // of the edge before; of the edge that begins at i
         for (int i = 0; i < vertices_; ++i, before = s) {
             energy += this->vertex_energy(x, i);
+            if (keeps) load.add(rows_, x, i, 1.0);
             if (i + 1 == vertices_) break;
             this->measure_edge(x, i, s);
             energy += this->edge_energy(i, s);
@@ -94,6 +127,7 @@ private:
             }
             if (keeps) keep(s, shapes_[i]);
         }
+        if (keeps) load_ = load;
         return energy;
     }
 
@@ -115,20 +149,49 @@ private:
         kept.director = s.director, kept.curvature1 = s.curvature1, kept.curvature2 = s.curvature2;
     }
 
-    Vec<T> director_spin(int i) const { return spin(rows_[i].reference.tangent, shapes_[i].tangent, shapes_[i].length); }
+    // What the terms of one corner leave for those of the next, and for the curvature of paths.
+    struct AddedTerms {
+        Vec<T> spin{}, spin_before{}; // of the directors of the edges at the corner (energy/strand/frame.h)
+        Vec<T> bending{}, twisting{}; // gradient of bend, and of the twist across the corner, by the edge before it
+        T moment_of_twist{};
 
-    void add_bend(int i, T *gradient, Matrix &hessian) const {
+        // Moment on the edge before the corner, of bend there and of twist across it [N m].
+        Vec<T> moment(const StrandShape<T> &before) const {
+            return before.length * cross(before.tangent, bending + twisting) - moment_of_twist * before.tangent;
+        }
+    };
+
+    // Of all terms of corners whose last vertex that is.
+    void add_terms(int last, T *gradient, Matrix &hessian, AddedTerms &terms) const {
+        if (last == 0) return;
+        terms.spin_before = terms.spin;
+        terms.spin = spin(rows_[last - 1].reference.tangent, shapes_[last - 1].tangent, shapes_[last - 1].length);
+        if (last > 1) add_bend(last - 1, gradient, hessian, terms);
+        if (last > 2) add_twist(last - 2, gradient, hessian, terms);
+    }
+
+    // Regularises a frame without stiffness, and holds those that are not free.
+    void finish_frame(int i, T *gradient, Matrix &hessian) const {
+        const T free = rows_[i].frame_free, bend = rows_[i].bend_stiffness / (rows_[i].rest_length * rows_[i].rest_length);
+        const T least = max(strand_settings::frame_stiffness * bend, constant<T>(strand_settings::frame_stiffness_min));
+        hessian.entry(4 * i + 3)[0] += free * least + (1.0 - free);
+        gradient[4 * i + 3] *= free;
+    }
+
+    void add_bend(int i, T *gradient, Matrix &hessian, AddedTerms &terms) const {
         const StrandShape<T> &before = shapes_[i - 1], &s = shapes_[i];
         const Vec<T> other = cross(s.tangent, s.director);
-        const Vec<T> K = turning(s.corner, before.tangent, s.tangent), spinning = director_spin(i);
+        const Vec<T> K = turning(s.corner, before.tangent, s.tangent);
         const T residual[2] = {s.curvature1 - rows_[i].damped_curvature1, s.curvature2 - rows_[i].damped_curvature2};
         const T by_frame[2] = {dot(K, other), -dot(K, s.director)};
         T u[2][11] = {};
+        terms.bending = Vec<T>{};
         for (int k = 0; k < 2; ++k) {
             const EdgeGradient<T> g =
                 turning_gradient(s.corner, before.tangent, s.tangent, before.length, s.length, k == 0 ? s.director : other);
-            const Vec<T> second = g.second + by_frame[k] * spinning;
+            const Vec<T> second = g.second + by_frame[k] * terms.spin;
             const T force = rows_[i].bend_stiffness * residual[k], frame = by_frame[k] / rows_[i].rest_length;
+            terms.bending = terms.bending + force * g.first;
             this->add(gradient, i - 1, -(force * g.first));
             this->add(gradient, i, force * (g.first - second));
             this->add(gradient, i + 1, force * second);
@@ -141,12 +204,14 @@ private:
         hessian.add_squares(4 * (i - 1), rows_[i].bend_stiffness, u);
     }
 
-    void add_twist(int i, T *gradient, Matrix &hessian) const {
+    void add_twist(int i, T *gradient, Matrix &hessian, AddedTerms &terms) const {
         const StrandShape<T> &s = shapes_[i], &after = shapes_[i + 1];
         const EdgeGradient<T> g = frame_twist_gradient(after.corner, s.tangent, after.tangent, s.length, after.length);
-        const Vec<T> first = g.first - director_spin(i), second = g.second + director_spin(i + 1);
+        const Vec<T> first = g.first - terms.spin_before, second = g.second + terms.spin;
         const T frame0 = -1.0 / rows_[i].rest_length, frame1 = 1.0 / rows_[i + 1].rest_length;
         const T moment = rows_[i].twist_stiffness * (s.strain - rows_[i].damped_strain);
+        terms.twisting = moment * g.first;
+        terms.moment_of_twist = moment;
         this->add(gradient, i, -(moment * first));
         this->add(gradient, i + 1, moment * (first - second));
         this->add(gradient, i + 2, moment * second);
@@ -160,6 +225,8 @@ private:
         put(u + 8, rows_[i + 2].free * second);
         hessian.add_square(4 * i, rows_[i].twist_stiffness, u);
     }
+
+    LoadBehind<T> load_; // of all vertices, at the positions evaluated last
 };
 
 } // namespace ringlet::RINGLET_SIMD
