@@ -69,4 +69,26 @@ BOOST_AUTO_TEST_CASE_TEMPLATE(entries_are_those_of_the_dense_matrix, System, Sys
     BOOST_TEST((lower - expected).norm() < 1e-14 * expected.norm());
 }
 
+// Longer than the window, with what makes it indefinite anywhere; part of that is added to the test alone.
+BOOST_AUTO_TEST_CASE_TEMPLATE(definiteness_is_that_of_the_whole_matrix, System, Systems) {
+    using Matrix = typename System::Matrix;
+    constexpr int vertices = 31, block = Matrix::layout.block;
+    for (int at = -1; at < vertices; ++at) {
+        System system(vertices);
+        const int column = block * at + 1;
+        if (at >= 0) system.matrix.entry(column)[0] -= 0.5 * system.dense(column, column);
+        for (const double part : {0.2, 0.8}) {
+            DefinitenessTest<Matrix, double> test;
+            for (int i = 0; i < vertices; ++i) {
+                if (i == at) test.entry(column)[0] -= part * system.dense(column, column);
+                test.complete(system.matrix.entry(block * i));
+            }
+            Eigen::MatrixXd dense = system.dense;
+            if (at >= 0) dense(column, column) *= 0.5 - part;
+            BOOST_TEST(test.definite() == double(dense.llt().info() == Eigen::Success));
+            if (part > 0.5) BOOST_TEST(test.definite() == double(at < 0));
+        }
+    }
+}
+
 BOOST_AUTO_TEST_SUITE_END()

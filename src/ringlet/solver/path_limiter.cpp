@@ -76,6 +76,10 @@ PlannedMove limit_path(const Objective &objective, Configuration &configuration,
         straight[object] = left[object] < solver_settings::near_impact;
         if (straight[object]) left[object] = solver_settings::straight_part;
     }
+    if (std::count(limited.begin(), limited.end(), 1) == 0) { // one pass is enough
+        refinement.add_move(now, wanted, move.to);
+        return move;
+    }
     straighten(blocks, straight, path);
     shorten(blocks, left, path);
 
