@@ -37,8 +37,8 @@ public:
             of_lanes[0] += 0.5 * inertia() * (at(x, i) - inertial_[i]).squaredNorm() +
                            0.5 * stiffness_ * (at(x, i) - anchors_[i]).squaredNorm();
     }
-    void evaluate(const double *x, double *of_lanes) override { energies(x, of_lanes); }
-    void assemble(const double *x) override {
+    void assemble(const double *x, double *of_lanes) override {
+        energies(x, of_lanes);
         gradient_.setZero(rows_);
         hessian_.setIdentity(rows_, rows_);
         hessian_ *= inertia() + stiffness_;

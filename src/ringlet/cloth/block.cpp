@@ -51,7 +51,8 @@ void ClothBlock::initial_guess(double *x) const {
 
 void ClothBlock::energies(const double *x, double *of_lanes) { of_lanes[0] = objective_.energy(vectors(x)); }
 
-void ClothBlock::assemble(const double *x) {
+void ClothBlock::assemble(const double *x, double *of_lanes) {
+    energies(x, of_lanes);
     matrix_.set_zero();
     objective_.assemble(vectors(x), gradient_, matrix_);
 }

@@ -38,8 +38,7 @@ public:
     void begin_step(const BlockStep &step) override;
     void initial_guess(double *x) const override; // advected or flying on, whichever has less energy
     void energies(const double *x, double *of_lanes) override;
-    void evaluate(const double *x, double *of_lanes) override { energies(x, of_lanes); }
-    void assemble(const double *x) override;
+    void assemble(const double *x, double *of_lanes) override;
     const double *gradient() const override { return gradient_.data()->data(); }
     void add_contacts(int vertex, const ContactSet &contacts, View<ContactValue> values) override;
     void add_spring(int vertex, const Vec3 &n, double force, double stiffness) override;

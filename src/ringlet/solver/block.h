@@ -59,12 +59,9 @@ public:
     // Replaces x, the advected positions, by a better initial guess where there is one.
     virtual void initial_guess(double *x) const = 0;
 
-    // Energies of the objects at x, a lane each [J]. evaluate() also keeps what assemble() needs.
+    // Energies of the objects at x, a lane each [J]; assemble() also sets gradient and Hessian.
     virtual void energies(const double *x, double *of_lanes) = 0;
-    virtual void evaluate(const double *x, double *of_lanes) = 0;
-
-    // Sets gradient and Hessian at the x evaluated last.
-    virtual void assemble(const double *x) = 0;
+    virtual void assemble(const double *x, double *of_lanes) = 0;
     virtual const double *gradient() const = 0; // of all unknowns
 
     // Adds what contacts do at a vertex, within its side of each, to gradient and Hessian. `values` are those of the contacts.

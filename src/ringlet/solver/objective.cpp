@@ -93,9 +93,8 @@ void Objective::linearise_contacts(const AlignedVector &x) {
 void Objective::assemble(int block, const AlignedVector &x) {
     Block &of = blocks[block];
     double energies[max_lanes] = {};
-    of.evaluate(blocks.of(block, x), energies);
+    of.assemble(blocks.of(block, x), energies);
     blocks.from_lanes(block, energies, own_energies_);
-    of.assemble(blocks.of(block, x));
     for (const int v : touched_.of(block)) of.add_contacts(v, contacts, values_);
     for (const RecoverySpring &spring : springs)
         if (blocks.block_of(table.object_of(spring.vertex)) == block)

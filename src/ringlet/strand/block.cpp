@@ -8,6 +8,16 @@
 #include <numeric>
 
 namespace ringlet {
+namespace {
+
+void *scratch_of_thread(size_t bytes) {
+    thread_local AlignedMemory memory;
+    thread_local size_t size = 0;
+    if (size < bytes) memory = AlignedMemory(size = bytes);
+    return memory.get();
+}
+
+} // namespace
 
 StrandBlock::StrandBlock(const StrandModel &model, StrandState &state, std::vector<int> strands)
     : model_(model), state_(state), strands_(std::move(strands)), reports_(strands_.size()) {
@@ -39,7 +49,8 @@ void StrandBlock::begin_step(const BlockStep &step) {
     const size_t bytes = RINGLET_DISPATCH(phased_step_bytes, step_, objects_[0].end - objects_[0].first);
     if (bytes != memory_bytes_) memory_ = AlignedMemory(memory_bytes_ = bytes);
     const StrandGroup group{strands_.data(), int(strands_.size())};
-    phases_ = RINGLET_DISPATCH(make_phased_step, arrays_, step_, group, memory_.get());
+    scratch_bytes_ = RINGLET_DISPATCH(phased_scratch_bytes, step_, objects_[0].end - objects_[0].first);
+    phases_ = RINGLET_DISPATCH(make_phased_step, arrays_, step_, group, memory_.get(), scratch_of_thread(scratch_bytes_));
     system_ = phases_->begin();
     dofs_ = system_.dofs();
     rows_ = dofs_ * system_.vertices;
@@ -48,9 +59,13 @@ void StrandBlock::begin_step(const BlockStep &step) {
 
 void StrandBlock::initial_guess(double *x) const { std::copy_n(system_.x, unknowns(), x); }
 
-void StrandBlock::energies(const double *x, double *of_lanes) { phases_->energy(x, of_lanes); }
-void StrandBlock::evaluate(const double *x, double *of_lanes) { phases_->evaluate(x, of_lanes); }
-void StrandBlock::assemble(const double *x) { phases_->assemble(x); }
+PhasedStep &StrandBlock::phases() const {
+    phases_->use(scratch_of_thread(scratch_bytes_));
+    return *phases_;
+}
+
+void StrandBlock::energies(const double *x, double *of_lanes) { phases().energy(x, of_lanes); }
+void StrandBlock::assemble(const double *x, double *of_lanes) { phases().assemble(x, of_lanes); }
 void StrandBlock::factor() { phases_->factor(); }
 void StrandBlock::solve(double *b) const { phases_->solve(b); }
 
@@ -142,7 +157,7 @@ double StrandBlock::settled_distance(int lane) const { return strand_settings::s
 bool StrandBlock::commit(const double *x, double, const SolverEffort &effort) {
     const StrandEffort of_strands{effort.iterations, effort.cuts, effort.residual};
     StrandReport reports[max_lanes];
-    phases_->end(x, of_strands, reports);
+    phases().end(x, of_strands, reports);
     std::copy_n(reports, reports_.size(), reports_.begin());
     return std::none_of(reports_.begin(), reports_.end(), [](const StrandReport &report) { return report.nan > 0; });
 }

@@ -21,8 +21,7 @@ public:
     void begin_step(const BlockStep &step) override;
     void initial_guess(double *x) const override;
     void energies(const double *x, double *of_lanes) override;
-    void evaluate(const double *x, double *of_lanes) override;
-    void assemble(const double *x) override;
+    void assemble(const double *x, double *of_lanes) override;
     const double *gradient() const override { return system_.gradient; }
     void add_contacts(int vertex, const ContactSet &contacts, View<ContactValue> values) override;
     void add_spring(int vertex, const Vec3 &n, double force, double stiffness) override;
@@ -39,6 +38,7 @@ public:
     const std::vector<StrandReport> &reports() const { return reports_; } // of the last step, by lane
 
 private:
+    PhasedStep &phases() const; // for a phase that needs scratch memory
     int strand_of(int vertex) const;
     size_t slot(int vertex) const;
     // Adds a 3 × 3 block to rows of vertex a and columns of vertex b of a strand, b = a or a − 1.
@@ -51,7 +51,7 @@ private:
     StrandStep step_;
     StrandArrays arrays_;
     AlignedMemory memory_{0};
-    size_t memory_bytes_ = 0;
+    size_t memory_bytes_ = 0, scratch_bytes_ = 0;
     PhasedStep *phases_ = nullptr; // in memory_
     StrandGroupSystem system_{};
     std::vector<StrandReport> reports_;

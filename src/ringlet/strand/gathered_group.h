@@ -10,7 +10,7 @@
 
 namespace ringlet::RINGLET_SIMD {
 
-// Working memory of one group's step, laid out in one block.
+// Working memory of one group's step: what it keeps, and scratch memory that only one phase of it uses at a time.
 template <class Objective> struct GroupMemory {
     using Matrix = typename Objective::Matrix;
 
@@ -20,29 +20,39 @@ template <class Objective> struct GroupMemory {
     Pack *x;                              // the unknowns
     NewtonMemory<Pack> newton;
 
-    static size_t bytes(int vertices) {
+    static size_t kept_bytes(int vertices) {
         const int unknowns = Objective::dofs * vertices;
-        return vertices * (sizeof(StrandRow<Pack>) + sizeof(StrandShape<Pack>) + 3 * sizeof(Vec<Pack>)) +
-               (4 * size_t(unknowns) + Matrix::padding + Matrix::entries(unknowns)) * sizeof(Pack);
+        return vertices * (sizeof(StrandRow<Pack>) + 3 * sizeof(Vec<Pack>)) +
+               (3 * size_t(unknowns) + Matrix::padding + Matrix::entries(unknowns)) * sizeof(Pack);
     }
+    static size_t scratch_bytes(int vertices) {
+        return vertices * (sizeof(StrandShape<Pack>) + Objective::dofs * sizeof(Pack));
+    }
+    static size_t bytes(int vertices) { return kept_bytes(vertices) + scratch_bytes(vertices); }
 
-    GroupMemory(void *memory, int vertices) {
-        char *next = static_cast<char *>(memory);
+    GroupMemory(void *memory, int vertices)
+        : GroupMemory(memory, static_cast<char *>(memory) + kept_bytes(vertices), vertices) {}
+    GroupMemory(void *kept, void *scratch, int vertices) {
+        char *next = static_cast<char *>(kept);
         const auto take = [&next]<class Type>(Type *&place, int count) {
             place = reinterpret_cast<Type *>(next);
             next += count * sizeof(Type);
         };
         const int unknowns = Objective::dofs * vertices;
         take(rows, vertices);
-        take(shapes, vertices);
         take(start, vertices);
         take(velocity, vertices);
         take(target, vertices);
         take(x, unknowns);
-        take(newton.trial, unknowns);
         take(newton.gradient, unknowns);
         take(newton.direction, unknowns + Matrix::padding);
         take(newton.band, Matrix::entries(unknowns));
+        use(scratch, vertices);
+    }
+
+    void use(void *scratch, int vertices) {
+        shapes = static_cast<StrandShape<Pack> *>(scratch);
+        newton.trial = reinterpret_cast<Pack *>(shapes + vertices);
     }
 };
 
@@ -71,7 +81,13 @@ template <class Objective> struct GatheredGroup {
     using Matrix = typename Objective::Matrix;
 
     GatheredGroup(const StrandArrays &all, const StrandStep &of_step, StrandGroup group, void *block)
-        : arrays(all), step(of_step), gather(all.offsets, group), vertices(gather.vertices()), memory(block, vertices),
+        : GatheredGroup(all, of_step, group, [block](int count) { return GroupMemory<Objective>(block, count); }) {}
+    GatheredGroup(const StrandArrays &all, const StrandStep &of_step, StrandGroup group, void *kept, void *scratch)
+        : GatheredGroup(all, of_step, group, [=](int count) { return GroupMemory<Objective>(kept, scratch, count); }) {}
+
+    template <class MakeMemory>
+    GatheredGroup(const StrandArrays &all, const StrandStep &of_step, StrandGroup group, const MakeMemory &make_memory)
+        : arrays(all), step(of_step), gather(all.offsets, group), vertices(gather.vertices()), memory(make_memory(vertices)),
           objective(vertices, memory.rows, memory.shapes, step.safeguards) {
         for (int i = 0; i < vertices; ++i) {
             memory.shapes[i] = StrandShape<Pack>{};
@@ -89,6 +105,12 @@ template <class Objective> struct GatheredGroup {
     double *normals() const { return Objective::has_frames ? arrays.directors : arrays.normals; }
     void scatter_normal(const StrandLane &strand, int i) const {
         LaneGather::scatter(objective.reference_normal(i), strand, i, normals());
+    }
+
+    // Other scratch memory; what the objective kept in the former is gone.
+    void use(void *scratch) {
+        memory.use(scratch, vertices);
+        objective.use(memory.shapes);
     }
 
     Matrix matrix() const { return {memory.newton.band, objective.size()}; }

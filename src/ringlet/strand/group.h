@@ -29,8 +29,10 @@ template <class Objective> void predict(GatheredGroup<Objective> &group, const R
 
 template <class Objective> class Group final : public PhasedStep {
 public:
-    Group(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, void *memory)
-        : strands_(arrays, step, group, memory), integrator_(integrator_of_lanes(strands_)) {}
+    // `memory`: of the whole step, or what it keeps and its scratch.
+    template <class... Memory>
+    Group(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, Memory *...memory)
+        : strands_(arrays, step, group, memory...), integrator_(integrator_of_lanes(strands_)) {}
 
     void step(StrandReport *reports) {
         prepare();
@@ -79,6 +81,7 @@ public:
     }
 
     // Phases
+    void use(void *scratch) override { strands_.use(scratch); }
     StrandGroupSystem begin() override {
         prepare();
         const auto plain = [](Pack *values) { return reinterpret_cast<double *>(values); };
@@ -92,10 +95,9 @@ public:
                 .padding = Matrix::padding};
     }
     void energy(const double *x, double *energies) override { scatter(strands_.objective.energy(packs(x)), energies); }
-    void evaluate(const double *x, double *energies) override { scatter(strands_.objective.evaluate(packs(x)), energies); }
-    void assemble(const double *x) override {
+    void assemble(const double *x, double *energies) override {
         Matrix hessian = strands_.matrix();
-        strands_.objective.relocate(packs(x));
+        scatter(strands_.objective.evaluate(packs(x)), energies);
         strands_.objective.assemble(strands_.memory.newton.gradient, hessian, curved_);
     }
     void factor() override { strands_.matrix().factor(); }

@@ -110,10 +110,12 @@ struct StrandGroupSystem {
 
 // A group's step in phases, for a solver outside. It lives in the caller's memory and needs no destructor.
 struct PhasedStep {
+    // Scratch memory for the phases from here on, which keep nothing in it. Where one block of it serves all groups of a
+    // thread, it stays in the cache.
+    virtual void use(void *scratch) = 0;
     virtual StrandGroupSystem begin() = 0;
     virtual void energy(const double *x, double *energies) = 0;   // one per lane
-    virtual void evaluate(const double *x, double *energies) = 0; // likewise; precedes assembly at x
-    virtual void assemble(const double *x) = 0;                   // gradient and matrix at the x evaluated last
+    virtual void assemble(const double *x, double *energies) = 0; // gradient and matrix at x, with the energies
     virtual void factor() = 0;
     virtual void solve(double *b) = 0;                                                        // in place
     virtual void max_step(const double *x, const double *direction, double *steps) const = 0; // one per lane
@@ -131,9 +133,10 @@ RINGLET_DECLARE(
     void step_strand_group(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, void *workspace, StrandReport *reports);
     void relax_strand_frames(const StrandArrays &arrays, StrandGroup group, void *workspace, double *energies);
     double strand_elastic_energy(const StrandArrays &arrays, const StrandStep &step, int strand, const double *positions, void *workspace, double *gradient, double *hessian);
-    // The arguments of a phased step must live as long as its memory.
+    // The arguments of a phased step, but for the scratch memory, must live as long as its memory.
     size_t phased_step_bytes(const StrandStep &step, int vertices);
-    PhasedStep *make_phased_step(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, void *memory);
+    size_t phased_scratch_bytes(const StrandStep &step, int vertices);
+    PhasedStep *make_phased_step(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, void *memory, void *scratch);
 )
 // clang-format on
 

@@ -62,13 +62,18 @@ double strand_elastic_energy(const StrandArrays &arrays, const StrandStep &step,
 
 size_t phased_step_bytes(const StrandStep &step, int vertices) {
     return group_bytes +
-           with_objective(step, [&]<class Objective>() { return GroupMemory<Objective>::bytes(max(vertices, 3)); });
+           with_objective(step, [&]<class Objective>() { return GroupMemory<Objective>::kept_bytes(max(vertices, 3)); });
 }
 
-PhasedStep *make_phased_step(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, void *memory) {
+size_t phased_scratch_bytes(const StrandStep &step, int vertices) {
+    return with_objective(step, [&]<class Objective>() { return GroupMemory<Objective>::scratch_bytes(max(vertices, 3)); });
+}
+
+PhasedStep *make_phased_step(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, void *memory,
+                             void *scratch) {
     return with_objective(step, [&]<class Objective>() -> PhasedStep * {
         static_assert(sizeof(Group<Objective>) <= group_bytes && std::is_trivially_destructible_v<Group<Objective>>);
-        return new (memory) Group<Objective>(arrays, step, group, static_cast<char *>(memory) + group_bytes);
+        return new (memory) Group<Objective>(arrays, step, group, static_cast<char *>(memory) + group_bytes, scratch);
     });
 }
 

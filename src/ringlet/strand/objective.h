@@ -26,8 +26,7 @@ public:
 
     int size() const { return dofs * vertices_; }
 
-    // The unknowns evaluated last are now at x: the same numbers in other memory.
-    void relocate(const T *x) { positions_ = x; }
+    void use(StrandShape<T> *shapes) { shapes_ = shapes; } // until something is evaluated they hold nothing
 
     // Largest step along a direction, at most 1, that changes no edge vector by more than twice its length. Beyond that, as
     // where an edge reverses, the linear model does not hold.
