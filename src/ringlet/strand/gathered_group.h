@@ -85,22 +85,6 @@ template <class Objective> struct GatheredGroup {
     GatheredGroup(const StrandArrays &all, const StrandStep &of_step, StrandGroup group, void *kept, void *scratch)
         : GatheredGroup(all, of_step, group, [=](int count) { return GroupMemory<Objective>(kept, scratch, count); }) {}
 
-    template <class MakeMemory>
-    GatheredGroup(const StrandArrays &all, const StrandStep &of_step, StrandGroup group, const MakeMemory &make_memory)
-        : arrays(all), step(of_step), gather(all.offsets, group), vertices(gather.vertices()), memory(make_memory(vertices)),
-          objective(vertices, memory.rows, memory.shapes, step.safeguards) {
-        for (int i = 0; i < vertices; ++i) {
-            memory.shapes[i] = StrandShape<Pack>{};
-            gather_row(gather, arrays, normals(), i, memory.rows[i]);
-            memory.start[i] = gather.position(arrays.positions, i);
-            memory.velocity[i] = gather.vector(arrays.velocities, i);
-            memory.target[i] = gather.position(arrays.targets, i);
-            Objective::set_position(memory.x, i, memory.start[i]);
-        }
-        for (int i = 0; i + 1 < vertices; ++i) memory.rows[i].reference.tangent = unit(memory.start[i + 1] - memory.start[i]);
-        start_energy = objective.begin(memory.x);
-    }
-
     // Directors of the material frames, or normals.
     double *normals() const { return Objective::has_frames ? arrays.directors : arrays.normals; }
     void scatter_normal(const StrandLane &strand, int i) const {
@@ -122,6 +106,23 @@ template <class Objective> struct GatheredGroup {
     GroupMemory<Objective> memory;
     Objective objective;
     Pack start_energy{}; // elastic [J]
+
+private:
+    template <class MakeMemory>
+    GatheredGroup(const StrandArrays &all, const StrandStep &of_step, StrandGroup group, const MakeMemory &make_memory)
+        : arrays(all), step(of_step), gather(all.offsets, group), vertices(gather.vertices()), memory(make_memory(vertices)),
+          objective(vertices, memory.rows, memory.shapes, step.safeguards) {
+        for (int i = 0; i < vertices; ++i) {
+            memory.shapes[i] = StrandShape<Pack>{};
+            gather_row(gather, arrays, normals(), i, memory.rows[i]);
+            memory.start[i] = gather.position(arrays.positions, i);
+            memory.velocity[i] = gather.vector(arrays.velocities, i);
+            memory.target[i] = gather.position(arrays.targets, i);
+            Objective::set_position(memory.x, i, memory.start[i]);
+        }
+        for (int i = 0; i + 1 < vertices; ++i) memory.rows[i].reference.tangent = unit(memory.start[i + 1] - memory.start[i]);
+        start_energy = objective.begin(memory.x);
+    }
 };
 
 } // namespace ringlet::RINGLET_SIMD

@@ -26,7 +26,11 @@ public:
 
     int size() const { return dofs * vertices_; }
 
-    void use(StrandShape<T> *shapes) { shapes_ = shapes; } // until something is evaluated they hold nothing
+    // Other memory for shapes. Evaluation sets all of them but for what the ends of a strand lack, which is 0.
+    void use(StrandShape<T> *shapes) {
+        shapes_ = shapes;
+        for (const int i : {0, vertices_ - 2, vertices_ - 1}) shapes_[i] = StrandShape<T>{};
+    }
 
     // Largest step along a direction, at most 1, that changes no edge vector by more than twice its length. Beyond that, as
     // where an edge reverses, the linear model does not hold.
