@@ -10,8 +10,6 @@
 #include "ringlet/strand/kernel.h"
 #include "ringlet/strand/vertex_data.h"
 
-#include <algorithm>
-
 namespace ringlet::RINGLET_SIMD {
 
 // `dofs_` unknowns per vertex, the first three its position.
@@ -91,7 +89,7 @@ protected:
             add_others(last);
             if (last >= reach) finish(last - reach);
         }
-        for (int i = std::max(0, vertices_ - reach); i < vertices_; ++i) finish(i);
+        for (int i = vertices_ < reach ? 0 : vertices_ - reach; i < vertices_; ++i) finish(i);
         hessian.set_zero(size(), size() + Matrix::padding);
     }
 
