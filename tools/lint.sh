@@ -16,7 +16,9 @@ types() { # the compiled module is seen through its stub
 tidy() { # clang-tidy brings headers of its own, but not that of OpenMP: it gets the compiler's, after all others
     local openmp
     openmp=$(dirname "$(${CXX:-c++} -print-file-name=include/omp.h)")
-    $bin/python $bin/run-clang-tidy.py -quiet -j 2 -p build/editable -clang-tidy-binary "$PWD/$bin/clang-tidy" \
+    mkdir -p build/tidy # without the flags that only GCC knows
+    sed -E 's/ -m(memcpy|memset|move|store)-[^ ]*//g' build/editable/compile_commands.json > build/tidy/compile_commands.json
+    $bin/python $bin/run-clang-tidy.py -quiet -j 2 -p build/tidy -clang-tidy-binary "$PWD/$bin/clang-tidy" \
         -extra-arg=-idirafter -extra-arg="$openmp" 'src/ringlet/'
 }
 
