@@ -30,8 +30,7 @@ template <class Objective> struct GroupMemory {
     }
     static size_t bytes(int vertices) { return kept_bytes(vertices) + scratch_bytes(vertices); }
 
-    GroupMemory(void *memory, int vertices)
-        : GroupMemory(memory, static_cast<char *>(memory) + kept_bytes(vertices), vertices) {}
+    // Without `scratch`, that stands behind what is kept.
     GroupMemory(void *kept, void *scratch, int vertices) {
         char *next = static_cast<char *>(kept);
         const auto take = [&next]<class Type>(Type *&place, int count) {
@@ -47,7 +46,7 @@ template <class Objective> struct GroupMemory {
         take(newton.gradient, unknowns);
         take(newton.direction, unknowns + Matrix::padding);
         take(newton.band, Matrix::entries(unknowns));
-        use(scratch, vertices);
+        use(scratch != nullptr ? scratch : next, vertices);
     }
 
     void use(void *scratch, int vertices) {
@@ -80,10 +79,20 @@ inline void gather_row(const LaneGather &gather, const StrandArrays &arrays, con
 template <class Objective> struct GatheredGroup {
     using Matrix = typename Objective::Matrix;
 
-    GatheredGroup(const StrandArrays &all, const StrandStep &of_step, StrandGroup group, void *block)
-        : GatheredGroup(all, of_step, group, [block](int count) { return GroupMemory<Objective>(block, count); }) {}
-    GatheredGroup(const StrandArrays &all, const StrandStep &of_step, StrandGroup group, void *kept, void *scratch)
-        : GatheredGroup(all, of_step, group, [=](int count) { return GroupMemory<Objective>(kept, scratch, count); }) {}
+    GatheredGroup(const StrandArrays &all, const StrandStep &of_step, StrandGroup group, void *kept, void *scratch = nullptr)
+        : arrays(all), step(of_step), gather(all.offsets, group), vertices(gather.vertices()), memory(kept, scratch, vertices),
+          objective(vertices, memory.rows, memory.shapes, step.safeguards) {
+        for (int i = 0; i < vertices; ++i) {
+            memory.shapes[i] = StrandShape<Pack>{};
+            gather_row(gather, arrays, normals(), i, memory.rows[i]);
+            memory.start[i] = gather.position(arrays.positions, i);
+            memory.velocity[i] = gather.vector(arrays.velocities, i);
+            memory.target[i] = gather.position(arrays.targets, i);
+            Objective::set_position(memory.x, i, memory.start[i]);
+        }
+        for (int i = 0; i + 1 < vertices; ++i) memory.rows[i].reference.tangent = unit(memory.start[i + 1] - memory.start[i]);
+        start_energy = objective.begin(memory.x);
+    }
 
     // Directors of the material frames, or normals.
     double *normals() const { return Objective::has_frames ? arrays.directors : arrays.normals; }
@@ -106,23 +115,6 @@ template <class Objective> struct GatheredGroup {
     GroupMemory<Objective> memory;
     Objective objective;
     Pack start_energy{}; // elastic [J]
-
-private:
-    template <class MakeMemory>
-    GatheredGroup(const StrandArrays &all, const StrandStep &of_step, StrandGroup group, const MakeMemory &make_memory)
-        : arrays(all), step(of_step), gather(all.offsets, group), vertices(gather.vertices()), memory(make_memory(vertices)),
-          objective(vertices, memory.rows, memory.shapes, step.safeguards) {
-        for (int i = 0; i < vertices; ++i) {
-            memory.shapes[i] = StrandShape<Pack>{};
-            gather_row(gather, arrays, normals(), i, memory.rows[i]);
-            memory.start[i] = gather.position(arrays.positions, i);
-            memory.velocity[i] = gather.vector(arrays.velocities, i);
-            memory.target[i] = gather.position(arrays.targets, i);
-            Objective::set_position(memory.x, i, memory.start[i]);
-        }
-        for (int i = 0; i + 1 < vertices; ++i) memory.rows[i].reference.tangent = unit(memory.start[i + 1] - memory.start[i]);
-        start_energy = objective.begin(memory.x);
-    }
 };
 
 } // namespace ringlet::RINGLET_SIMD

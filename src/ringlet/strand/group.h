@@ -29,10 +29,8 @@ template <class Objective> void predict(GatheredGroup<Objective> &group, const R
 
 template <class Objective> class Group final : public PhasedStep {
 public:
-    // `memory`: of the whole step, or what it keeps and its scratch.
-    template <class... Memory>
-    Group(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, Memory *...memory)
-        : strands_(arrays, step, group, memory...), integrator_(integrator_of_lanes(strands_)) {}
+    Group(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, void *memory, void *scratch = nullptr)
+        : strands_(arrays, step, group, memory, scratch), integrator_(integrator_of_lanes(strands_)) {}
 
     void step(StrandReport *reports) {
         prepare();
