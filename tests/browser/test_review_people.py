@@ -85,7 +85,10 @@ def test_a_follower_sees_the_comparison_as_the_leader_arranges_it(pair: tuple[Re
 def test_the_pointer_of_the_leader_is_seen_where_it_points(pair: tuple[Review, Review]):
     one, two = pair
     give_name(one, "Ann")
-    two.page.get_by_role("button", name="Stay a guest").click()  # the question for a name moves the picture
+    two.page.get_by_role("button", name="Stay a guest").click()
+    for review in pair:
+        review.laid_out()  # the question for a name moves the picture
+        review.until("ringlet.viewer.idle")
     box = one.page.locator("main canvas").bounding_box()
     x, y = box["x"] + box["width"] / 2, box["y"] + 0.35 * box["height"]
     one.page.mouse.move(x - 5, y)
