@@ -38,11 +38,12 @@ struct Crowd {
 
     ConnectedMesh connected() const { return {mesh, View<int>(offsets)}; }
 
-    CcdReport limit(std::vector<Vec3> &limited) const {
+    // Paths longer than `max_path` escape their bounds [m].
+    CcdReport limit(std::vector<Vec3> &limited, bool whole = false, double max_path = 0.0) const {
         PairCache pairs(mesh);
-        pairs.update_bounds({start, start}, {.margin = 0.005, .max_path = 0.0});
+        pairs.update_bounds({start, end}, {.margin = 0.005, .max_path = max_path});
         limited = end;
-        return limit_motion({.connected = connected(), .start = start}, pairs, limited);
+        return limit_motion({.connected = connected(), .start = start, .whole_strands = whole}, pairs, limited);
     }
 
     CcdReport resolve(std::vector<Vec3> &resolved) const {
@@ -55,11 +56,11 @@ struct Crowd {
     }
 
     // Limits a move; then every third strand is shortened further, and the rest of the move is limited again.
-    CcdReport limit_and_shorten(std::vector<Vec3> &limited) const {
+    CcdReport limit_and_shorten(std::vector<Vec3> &limited, bool whole = false) const {
         PairCache pairs(mesh);
         pairs.update_bounds({start, end}, {.margin = 0.0005, .max_path = 0.1});
         limited = end;
-        limit_motion({.connected = connected(), .start = start}, pairs, limited);
+        limit_motion({.connected = connected(), .start = start, .whole_strands = whole}, pairs, limited);
         std::vector<unsigned char> changed(start.size(), 0);
         for (size_t v = 0; v < start.size(); ++v)
             if (mesh.object[v] % 3 == 0) {

@@ -8,10 +8,16 @@
 #include <optional>
 
 namespace ringlet {
+namespace {
+
+constexpr size_t prefetched_pairs = 6; // loaded ahead of the one that is tested
+
+} // namespace
 
 MotionLimiter::MotionLimiter(const LimitMotionInput &input, PairCache &pairs, std::vector<Vec3> &end, std::vector<Vec3> *apex)
-    : input_(input), mesh_(input.connected.mesh), end_(end), apex_(apex), strands_(int(input.connected.strands.size()) - 1),
-      transient_(pairs.transient_pairs()), fraction_(strands_, 1.0), changed_(end.size(), 0) {
+    : input_(input), pairs_(pairs), mesh_(input.connected.mesh), end_(end), apex_(apex),
+      strands_(int(input.connected.strands.size()) - 1), transient_(pairs.transient_pairs()), fraction_(strands_, 1.0),
+      changed_(end.size(), 0) {
     pairs_of_strand_ = {size_t(strands_), [&](const auto &add) {
                             const auto consider = [&](CandidatePair &pair) {
                                 const auto [a, b] = pair.object;
@@ -33,14 +39,17 @@ std::array<int, 2> MotionLimiter::strands_of(const Impact &impact) const {
     return {strand_of(a0, a1), strand_of(b1, b0)};
 }
 
-void MotionLimiter::resolve(const std::vector<Impact> &impacts) {
+bool MotionLimiter::resolve(const std::vector<Impact> &impacts) {
     for (const int v : changed_list_) changed_[v] = 0;
     changed_list_.clear();
     for (const Impact &impact : impacts) // is checked again: a local correction elsewhere may have left this impact unresolved
         for (const int v : impact.vertices)
             if (mesh_.moves[v]) mark_changed(v);
-    limit_strands(impacts, correct_locally(impacts));
-    ++round_;
+    measured_ = fraction_;
+    const std::vector<int> corrected = correct_locally(impacts);
+    limit_strands(impacts, corrected);
+    corrected_locally_ |= !corrected.empty() || input_.connected.cloths.size() > 1;
+    return ++round_ > ccd::strand_rounds || corrected_locally_ || !pairs_.is_bounded();
 }
 
 // Corrects cloths, and strands that could hardly move, near their impacts. Returns these strands.
@@ -92,6 +101,17 @@ void MotionLimiter::limit_strands(const std::vector<Impact> &impacts, const std:
     }
 }
 
+// Pairs of a strand lead all over memory: those to come are loaded while one is tested.
+void MotionLimiter::prefetch(View<CandidatePair *> pairs, size_t k) const {
+    if (k + 2 * prefetched_pairs < pairs.size()) __builtin_prefetch(pairs[k + 2 * prefetched_pairs]);
+    if (k + prefetched_pairs >= pairs.size()) return;
+    for (const int edge : pairs[k + prefetched_pairs]->primitive) {
+        const int v = mesh_.edges[edge][0]; // the other vertex is next to it
+        __builtin_prefetch(&input_.start[v]);
+        __builtin_prefetch(&end_[v]);
+    }
+}
+
 // Adds the events of the impacts that this causes.
 void MotionLimiter::limit_strand(int strand, double fraction, std::vector<Event> &events) {
     if (fraction >= fraction_[strand]) return;
@@ -100,13 +120,26 @@ void MotionLimiter::limit_strand(int strand, double fraction, std::vector<Event>
     for (int v = offsets[strand]; v < offsets[strand + 1]; ++v)
         if (mesh_.moves[v]) scale_motion(v, factor);
     fraction_[strand] = fraction;
-    for (CandidatePair *pair : pairs_of_strand_.of(strand)) {
-        if (fraction_[pair->object[0]] == fraction_[pair->object[1]]) continue; // its impact is known from before
-        const auto &a = mesh_.edges[pair->primitive[0]], &b = mesh_.edges[pair->primitive[1]];
+    const View<CandidatePair *> pairs = pairs_of_strand_.of(strand);
+    for (size_t k = 0; k < pairs.size(); ++k) {
+        prefetch(pairs, k);
+        CandidatePair &pair = *pairs[k];
+        if (fraction_[pair.object[0]] == fraction_[pair.object[1]]) continue; // its impact is known from before
+        if (!may_have_impact(pair)) continue;
+        const auto &a = mesh_.edges[pair.primitive[0]], &b = mesh_.edges[pair.primitive[1]];
         if (strand_of(a[0], a[1]) < 0 || strand_of(b[0], b[1]) < 0) continue;
-        const double toi = time_of_impact(mesh_, *pair, input_.start, end_);
+        const double toi = time_of_impact(mesh_, pair, input_.start, end_);
         if (toi <= 1.0) add_event({{a[0], a[1], b[0], b[1]}, toi}, events);
     }
+}
+
+// Whether the paths that are left to two strands are longer than a lower bound on their gap. Many are not, and no vertex is
+// needed.
+bool MotionLimiter::may_have_impact(const CandidatePair &pair) const {
+    const auto [length_a, length_b] = pairs_.path_lengths(pair);
+    const auto [a, b] = pair.object;
+    const double approach = fraction_[a] / measured_[a] * length_a + fraction_[b] / measured_[b] * length_b;
+    return !(pair.min_gap - ccd::separation_of_d_hat * pair.d_hat > approach); // a strand that rests: not a number
 }
 
 // Of two strands with different fractions the one that goes farther stops just before it meets the other, and goes as far as
@@ -155,7 +188,11 @@ CcdReport limit_motion(const LimitMotionInput &input, PairCache &pairs, std::vec
             break;
         }
         if (!limiter) limiter.emplace(input, pairs, end, apex);
-        limiter->resolve(impacts);
+        if (!limiter->resolve(impacts)) {
+            pairs.defer_update(limiter->changed());
+            ++report.rounds;
+            break;
+        }
         pairs.update_move(move(), limiter->changed());
     }
     report.corrected_vertices = int(std::count(corrected.begin(), corrected.end(), 1));

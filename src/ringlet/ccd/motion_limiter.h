@@ -25,14 +25,16 @@ CcdReport limit_motion(const LimitMotionInput &input, PairCache &pairs, std::vec
                        std::vector<Vec3> *apex = nullptr);
 
 // One move of limit_motion(). The strands of an impact are scaled to its time, and one that then hits a strand with a smaller
-// fraction stops before that. Such chains are resolved within a round, event by event, the smallest fraction first. After
-// some rounds strands with an impact rest, and two that rest have none.
+// fraction stops before that. Such chains are resolved within a round, event by event, the smallest fraction first. What was
+// corrected locally is checked in a further round. After some rounds strands with an impact rest, and two that rest have none.
 class MotionLimiter {
 public:
     // `pairs` has begun the move from `input.start` to `end`, which is changed, as is `apex`.
     MotionLimiter(const LimitMotionInput &input, PairCache &pairs, std::vector<Vec3> &end, std::vector<Vec3> *apex);
 
-    void resolve(const std::vector<Impact> &impacts);                      // among the vertices that the last round changed
+    // Resolves impacts among the vertices that the last round changed. Whether others may follow: events find those of strands
+    // with one another, and bodies stay.
+    bool resolve(const std::vector<Impact> &impacts);
     const std::vector<unsigned char> &changed() const { return changed_; } // vertices, in the last round
 
 private:
@@ -60,15 +62,20 @@ private:
         changed_[v] = 1;
     }
 
+    void prefetch(View<CandidatePair *> pairs, size_t k) const;
+    bool may_have_impact(const CandidatePair &pair) const;
+
     const LimitMotionInput &input_;
+    const PairCache &pairs_;
     const CollisionMesh &mesh_;
     std::vector<Vec3> &end_;
     std::vector<Vec3> *apex_; // null: paths are straight
     int strands_, round_ = 0;
-    std::vector<CandidatePair> transient_;   // as in the first round; later rounds change those of the cache
-    Lists<CandidatePair *> pairs_of_strand_; // pairs with another strand that may close on their paths
-    std::vector<double> fraction_;           // of its motion that each strand makes
-    std::vector<unsigned char> changed_;     // per vertex
+    bool corrected_locally_ = false;          // in any round: what was known of impacts no longer holds
+    std::vector<CandidatePair> transient_;    // as in the first round; later rounds change those of the cache
+    Lists<CandidatePair *> pairs_of_strand_;  // pairs with another strand that may close on their paths
+    std::vector<double> fraction_, measured_; // of its motion that each strand makes, now and when paths were measured
+    std::vector<unsigned char> changed_;      // per vertex
     std::vector<int> changed_list_;
 };
 

@@ -91,6 +91,7 @@ std::vector<CandidatePair> PairCache::find_transient(View<unsigned char> changed
 
 void PairCache::begin_move(const Move &move) {
     complete_ = false;
+    deferred_.clear();
     bounds_.find_escaped(move);
     paths_.set_changed(all_);
     paths_.measure(move, all_, bounds_.escaped());
@@ -112,6 +113,12 @@ void PairCache::begin_move(const Move &move) {
 }
 
 void PairCache::update_move(const Move &move, View<unsigned char> changed) {
+    if (!deferred_.empty()) {
+        std::vector<unsigned char> all = std::move(deferred_);
+        deferred_.clear();
+        for (size_t v = 0; v < all.size(); ++v) all[v] |= changed[v];
+        return update_move(move, all);
+    }
     const MeshSubset subset(mesh_, broad_phase_.incidence(), changed);
     paths_.set_changed(subset);
     paths_.measure(move, subset, bounds_.escaped());

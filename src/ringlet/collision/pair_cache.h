@@ -39,6 +39,8 @@ public:
     // in the triangle of start, first end and apex, or without an apex of start and first end.
     void begin_move(const Move &move);
     void update_move(const Move &move, View<unsigned char> changed);
+    // Vertices whose paths became shorter without any impact: the next update takes them along with those that change then.
+    void defer_update(View<unsigned char> changed) { deferred_.assign(changed.begin(), changed.end()); }
     void commit_move(View<Vec3> start, View<Vec3> end); // or any fraction of the move
 
     // The same for a move that nearly follows one rigid motion: only deviating vertices need a search. Vertices with one
@@ -52,6 +54,8 @@ public:
     const std::vector<CandidatePair *> &impact_candidates() { return impact_candidates_; }
     // Cached pairs that may have one wherever in their triangles the vertices are, since the move began.
     const std::vector<CandidatePair *> &path_candidates() { return path_candidates_; }
+    // Upper bounds on the lengths of the paths of a pair's primitives, as of the last update [m].
+    std::array<double, 2> path_lengths(const CandidatePair &pair) const { return paths_.lengths(pair); }
     // Pairs of escaped vertices, in order; update_move() replaces them.
     const std::vector<CandidatePair> &transient_pairs() const { return transient_; }
 
@@ -60,6 +64,8 @@ public:
     // Pairs with a marked object that may come into contact anywhere on the move, in order.
     ReachablePairs reachable_pairs(View<unsigned char> objects) const;
 
+    // All pairs that may have an impact on the move are cached, however far each side gets.
+    bool is_bounded() const { return !bounds_.any_escaped(); }
     // After a rigid move: contact_pairs() is exact without new bounds.
     bool is_complete() const { return complete_; }
     int size() const { return int(cached_.size() + transient_.size()); }
@@ -93,7 +99,8 @@ private:
     State state_ = State::Empty;
     bool refitted_all_ = false; // by the last update of the bounds
     bool complete_ = false;
-    bool boxes_searched_ = false; // on a rigid move: the broad phase holds the boxes of the move
+    std::vector<unsigned char> deferred_; // vertices; empty: none
+    bool boxes_searched_ = false;         // on a rigid move: the broad phase holds the boxes of the move
 
     std::vector<CandidatePair> cached_, transient_; // in order
     std::vector<CandidatePair *> reachable_, path_candidates_,
