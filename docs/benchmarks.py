@@ -57,9 +57,10 @@ def all_runs(runs: dict[str, Any]) -> Iterator[str]:
             continue  # of memory: docs/robustness.md
         cpu = result["cpu_ms"]
         contacts = f"{result['contacts']:,.0f}" if result.get("contacts") else ""
+        load = "" if run["load"] is None else f"{run['load']:g}"  # not measured
         yield (
             f"| `{run['command']}` | {time(cpu['median'])} | {time(cpu['min'])}, {time(cpu['max'])} | "
-            f"{result['threads']}, {result['simd']} | {contacts} | {run['date']} | {run['load']:g} | "
+            f"{result['threads']}, {result['simd']} | {contacts} | {run['date']} | {load} | "
             f"{run['processor']} |"
         )
 

@@ -48,8 +48,9 @@ bool MotionLimiter::resolve(const std::vector<Impact> &impacts) {
     measured_ = fraction_;
     const std::vector<int> corrected = correct_locally(impacts);
     limit_strands(impacts, corrected);
-    corrected_locally_ |= !corrected.empty() || input_.connected.cloths.size() > 1;
-    return ++round_ > ccd::strand_rounds || corrected_locally_ || !pairs_.is_bounded();
+    corrected_locally_ |= !corrected.empty();
+    const bool any_cloths = input_.connected.cloths.size() > 1;
+    return ++round_ > ccd::strand_rounds || corrected_locally_ || any_cloths || !pairs_.is_bounded();
 }
 
 // Corrects cloths, and strands that could hardly move, near their impacts. Returns these strands.
