@@ -7,11 +7,13 @@ import pytest
 import small_example
 from commands import edit, refused, run
 from ringlet.adoption import find_clumps, fit_coils
+from ringlet.adoption.scalp import scalp_of_roots
 from ringlet.api.adoption import distances
 from ringlet.data.hair_scene import CurveSet, HairScene
 from ringlet.data.painted import per_lock
 from ringlet.data.random import Random, soft_threshold
 from ringlet.groom.operators.operator import grid, resampled
+from ringlet.groom.scalp import Scalp
 from ringlet.io import read_hairs, write_scene
 
 from ringlet import (
@@ -181,6 +183,47 @@ def test_straight_hair_without_a_head_becomes_a_lock_each(tmp_path, name):
     assert (np.einsum("kx,kx->k", normals, groom.scalp.points) > 0.0).all()
     ends = groom.locks.points[groom.locks.offsets[1:] - 1]
     np.testing.assert_allclose(ends, curves.points[curves.offsets[1:] - 1], atol=1e-5)
+
+
+def roots_of(kind, count, random):
+    """Roots in a position that is not general, in any direction; None where they span no surface."""
+    along, across = np.linalg.qr(random.normal(size=(3, 2)))[0].T
+    t, s = random.uniform(-0.1, 0.1, (2, count, 1))
+    angle = random.uniform(0.0, 2.0 * np.pi, (count, 1))
+    directions = random.normal(size=(count, 3))
+    places = {
+        "line": t * along,
+        "plane": t * along + s * across,
+        "circle": 0.1 * (np.cos(angle) * along + np.sin(angle) * across),
+        "two lines": t * along + 0.01 * np.sign(s) * across,
+        "sphere": 0.1 * directions / np.linalg.norm(directions, axis=1, keepdims=True),
+        "cloud": 0.1 * directions,
+    }
+    return random.uniform(-1.0, 1.0, 3) + places[kind]
+
+
+@pytest.mark.parametrize("kind", ["line", "plane", "circle", "two lines", "sphere", "cloud"])
+def test_roots_in_any_position_get_a_surface_or_are_refused(kind):
+    random = np.random.default_rng(53)
+    for count in [3, 4, 5, 8, 20, 60] * 5:
+        roots = roots_of(kind, count, random)
+        try:
+            surface = scalp_of_roots(roots, "hair")
+        except UserError as error:
+            flat = np.linalg.svd(roots - roots.mean(axis=0))[1][1] < 1e-3  # within a millimetre of a line
+            assert flat and str(error).endswith("which spans no surface; give it a head with --head")
+            continue
+        assert kind != "line"
+        Scalp(surface, None)  # of one orientation
+        distance = np.linalg.norm(surface.points[None] - roots[:, None], axis=2).min(axis=1)
+        assert distance.max() < 1e-3  # the surface passes through all roots
+
+
+def test_the_surface_through_the_roots_of_a_head_faces_outwards():
+    directions = np.random.default_rng(1).normal(size=(200, 3))
+    directions[:, 1] = np.abs(directions[:, 1])
+    surface = scalp_of_roots(0.1 * directions / np.linalg.norm(directions, axis=1, keepdims=True), "hair")
+    assert (np.einsum("nk,nk->n", surface.normals(), surface.points) > 0.0).all()
 
 
 def test_finished_hair_is_simulated_on_its_moving_head(known, tmp_path):

@@ -20,6 +20,12 @@ def helix(radius=0.01, pitch=0.02, turns=3.0, points=400):
         ({}, {"pin": [0, 0, 1, 1e30]}, "here: pin is 1e\\+30 on curve 9; must be from 0 to 1"),
         ({}, {"pin": [0, -5, 1, 0]}, "here: pin is -5 on curve 7; must be from 0 to 1"),
         ({}, {"pin": [0, 0, np.nan, 0]}, "here: pin is nan on curve 9; must be from 0 to 1"),
+        ({"displayColor": [[0, 0, 0], [0, np.nan, 1]]}, {}, "here: displayColor is nan on curve 9; must be from 0"),
+        ({}, {"displayColor": [[0, -1, 0]] * 4}, "here: displayColor is -1 on curve 7; must be from 0"),
+        ({}, {"color": [[0, 0, 0]] * 3 + [[1e30, 0, 0]]}, "here: color is 1e\\+30 on curve 9; must be from 0"),
+        ({"displayOpacity": [1.0, 2.0]}, {}, "here: displayOpacity is 2 on curve 9; must be from 0 to 1"),
+        ({"melanin": [np.inf, 0.5]}, {}, "here: melanin is inf on curve 7; must be from"),
+        ({"st": [[0, 0], [1e20, 0]]}, {}, "here: st is 1e\\+20 on curve 9; must be from"),
     ],
 )
 def test_widths_and_pins_out_of_range_are_refused(curve, point, message):

@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdShade
 from ringlet.io import (
+    open_scene,
     read_bodies,
     read_cache,
     read_clip,
+    read_curves,
     read_groom,
     read_hairs,
     read_mesh,
@@ -93,6 +95,36 @@ def test_broken_meshes_are_refused(tmp_path, change, says):
     stage.Save()
     with pytest.raises(UserError, match=says):
         read_mesh(tmp_path / "a.usda")
+
+
+@pytest.mark.parametrize("values", [[float("nan"), 0, 0], [-1, 0, 0], [0, 1e30, 0]])
+def test_colors_that_are_none_are_refused(tmp_path, values):
+    stage = new_stage(tmp_path / "a.usda")
+    add_cube(stage).CreateDisplayColorAttr([Gf.Vec3f(*values)])
+    stage.Save()
+    with pytest.raises(UserError, match=r"/head/skin: displayColor is .* on value 0; must be from 0"):
+        read_mesh(tmp_path / "a.usda")
+
+
+def test_prims_that_show_nothing_are_passed_over(tmp_path):
+    stage = new_stage(tmp_path / "a.usda")
+    add_cube(stage, scalp=False)
+    UsdGeom.Mesh.Define(stage, "/head/empty").CreatePointsAttr([Gf.Vec3f(0)] * 2)
+    UsdGeom.Mesh.Define(stage, "/head/nothing")
+    UsdGeom.PointInstancer.Define(stage, "/head/beads")
+    for name, counts in (("hair", [2]), ("bald", [])):
+        curves = UsdGeom.BasisCurves.Define(stage, f"/head/{name}")
+        curves.CreatePointsAttr([Gf.Vec3f(0, k, 0) for k in range(sum(counts))])
+        curves.CreateCurveVertexCountsAttr(counts)
+        curves.CreateTypeAttr("linear")
+    stage.Save()
+    assert len(read_mesh(tmp_path / "a.usda").triangles) == 12
+    assert [body.prim for body in read_bodies(tmp_path / "a.usda")] == ["/head/skin"]
+    assert [body.prim for body in read_bodies(tmp_path / "a.usda", "/head")] == ["/head/skin"]
+    assert len(read_curves(tmp_path / "a.usda")) == len(read_hairs(tmp_path / "a.usda")) == 1
+    with open_scene(tmp_path / "a.usda") as scene:
+        assert [one.name for one in scene.sets] == ["hair"] and len(scene.bodies) == 1
+    assert "/head/empty: has no faces" in refused(read_mesh, tmp_path / "a.usda", "/head/empty")
 
 
 def set_uv(mesh, values, indices=None):

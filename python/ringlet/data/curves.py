@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet.data import limits
+from ringlet.data.attributes import check_attribute
 from ringlet.data.errors import UserError
 
 LEAST_EDGE = 1e-8  # [m] an edge that is shorter has no direction in single precision
@@ -159,7 +160,7 @@ class Curves:
             )
         if not (near := (np.abs(self.points) <= limits.FARTHEST).all(axis=1)).all():
             row = int(np.flatnonzero(~near)[0])
-            curve = int(np.searchsorted(self.offsets, row, side="right") - 1)
+            curve = self._curve_of(row)
             raise UserError(
                 f"{what}: curve {self.ids[curve]}, point {row - self.offsets[curve]} is {self.points[row]}; "
                 f"must be finite, and at most {limits.FARTHEST:g} from 0"
@@ -173,19 +174,15 @@ class Curves:
         return self
 
     def _check_values(self, what: str) -> None:
-        """Refuses widths, radii, pins and ties out of range."""
-        ranges = {"width": (0.0, np.inf), "strand_radius": (0.0, np.inf), "pin": (0.0, 1.0), "tied": (0.0, 1.0)}
-        for name, (least, most) in ranges.items():
-            for kind, attributes in (("curve", self.curve), ("point", self.point)):
-                values = np.asarray(attributes.get(name, ()))
-                if values.dtype.kind not in "biuf" or values.ndim != 1:
-                    raise UserError(f"{what}: {name} is not one number for each {kind}; write it again")
-                good = np.isfinite(values) & (values >= least) & (values <= most)
-                if (bad := np.flatnonzero(~good)).size:
-                    row = int(bad[0])
-                    curve = row if kind == "curve" else int(np.searchsorted(self.offsets, row, side="right") - 1)
-                    bound = f"from {least:g} to {most:g}" if np.isfinite(most) else f"at least {least:g} and finite"
-                    raise UserError(f"{what}: {name} is {values[row]:g} on curve {self.ids[curve]}; must be {bound}")
+        """Refuses attributes that are not finite or out of range."""
+        for name, values in self.curve.items():
+            check_attribute(name, values, what, "curve", lambda row: f"curve {self.ids[row]}")
+        for name, values in self.point.items():
+            check_attribute(name, values, what, "point", lambda row: f"curve {self.ids[self._curve_of(row)]}")
+
+    def _curve_of(self, row: int) -> int:
+        """The curve that a row of ``points`` belongs to."""
+        return int(np.searchsorted(self.offsets, row, side="right") - 1)
 
     def check_strands(self, what: str) -> Curves:
         """Refuses curves that cannot move as strands; ``what`` names them in the message. Returns self.
@@ -199,7 +196,7 @@ class Curves:
         edges = self._steps()
         edges[self.offsets[1:-1] - 1] = np.inf  # the jump from one curve to the next is no edge
         if (flat := np.flatnonzero(~(edges >= LEAST_EDGE))).size:
-            curve = int(np.searchsorted(self.offsets, flat[0], side="right") - 1)
+            curve = self._curve_of(flat[0])
             point, place = flat[0] - self.offsets[curve], ", ".join(f"{x:.4g}" for x in self.points[flat[0]])
             raise UserError(
                 f"{what}: points {point} and {point + 1} of curve {self.ids[curve]} coincide at ({place}) m; move them "

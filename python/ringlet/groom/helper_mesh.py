@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 from ringlet.data.mesh import Mesh
 from ringlet.data.quantities import Quantity, refuse
 from ringlet.groom.helpers import Place
-from ringlet.groom.source import Source
+from ringlet.groom.source import OF_SPACE, Source
 
 RINGS = 48  # of an ellipsoid, from pole to pole
 
@@ -20,6 +20,9 @@ Size = Annotated[float, Quantity("m", 1e-3, 10.0)]
 
 class HelperMesh(Source):
     """A closed mesh of a file, or an ellipsoid."""
+
+    of_file: ClassVar[tuple[str, ...]] = (*OF_SPACE, "mesh")
+    of_shape: ClassVar[tuple[str, ...]] = ("middle", "width", "height", "depth")
 
     file: str | None = Field(
         default=None, description="USD or OBJ file with the mesh, next to the recipe or with a full path"

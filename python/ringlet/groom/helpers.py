@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 from pydantic import BeforeValidator, Field, ValidationInfo, model_validator
 
 from ringlet.data.curves import Curves
 from ringlet.data.quantities import Quantity, refuse
-from ringlet.groom.source import Source
+from ringlet.groom.source import OF_SPACE, Source
 
 FAR = Quantity("m", -1000.0, 1000.0)  # of a coordinate
 
@@ -26,6 +26,9 @@ Place = Annotated[tuple[Coordinate, Coordinate, Coordinate], BeforeValidator(_to
 
 class HelperCurves(Source):
     """Curves that guide operators: points given here, or curves of a file."""
+
+    of_file: ClassVar[tuple[str, ...]] = (*OF_SPACE, "prim")
+    of_shape: ClassVar[tuple[str, ...]] = ("points",)
 
     points: list[Place] | None = Field(default=None, description="[x, y, z] of the points of a curve, Y up")
     file: str | None = Field(

@@ -113,7 +113,7 @@ class _Reader:
         frames = np.array(sorted(self.frames))
         if len(frames) > limits.FRAMES:
             raise UserError(f"{self.path}: has {len(frames)} frames; must be at most {limits.FRAMES:,}")
-        bodies = [self._body(schema, above, frames) for schema, above in meshes]
+        bodies = [self._body(schema, above, frames) for schema, above in meshes if self._has_faces(schema)]
         space = StageSpace(self.space.meters_per_unit, self.space.up_axis, self.fps)
         return HairScene(sorted(sets, key=lambda one: one.guide), bodies, frames, space)
 
@@ -166,9 +166,11 @@ class _Reader:
         """The curves of a schema; its guides and its hairs apart, where it has both."""
         geom, where = self.library.geom, self._where(schema)
         sample = schema.getValue(self._at(None))
-        controls = self._placed(schema, above, None)
         counts = np.array(sample.getCurvesNumVertices(), np.int64)
-        if len(counts) == 0 or counts.min() < 2 or counts.sum() != len(controls):
+        if len(counts) == 0:  # as valid as a mesh without faces
+            return
+        controls = self._placed(schema, above, None)
+        if counts.min() < 2 or counts.sum() != len(controls):
             raise UserError(f"{where}: its {len(counts)} curves do not fit its {len(controls)} points; export it again")
         basis = {
             geom.BasisType.kBezierBasis: "bezier",
@@ -251,6 +253,9 @@ class _Reader:
                 f"{where}: has {len(values)} widths for {len(curves)} curves and {sampling.offsets_in[-1]} points; "
                 "export it again"
             )
+
+    def _has_faces(self, schema: Any) -> bool:
+        return len(schema.getValue(self._at(None)).getFaceCounts()) > 0
 
     def _body(self, schema: Any, above: list[Any], frames: NDArray) -> tuple[Mesh, Clip | None]:
         where, sample = self._where(schema), schema.getValue(self._at(None))

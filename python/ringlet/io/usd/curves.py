@@ -25,6 +25,7 @@ from ringlet.io.usd.names import identifier, keep_name, original_name
 from ringlet.io.usd.place import Place, placed
 from ringlet.io.usd.pose import posed_points, rest_time
 from ringlet.io.usd.stage import Source, choose, find_prim, prims, reading
+from ringlet.io.usd.surfaces import filled
 from ringlet.io.usd.values import (
     Types,
     flattened,
@@ -59,7 +60,7 @@ def read_usd_curves(path: Path | str, prim: str | None = None, notes: list[str] 
     """
     with reading(path) as source:
         root = source.stage.GetPseudoRoot() if prim is None else find_prim(source, prim)
-        found = [p for p in prims(root) if UsdGeom.BasisCurves(p)]
+        found = filled(p for p in prims(root) if UsdGeom.BasisCurves(p))
         chosen = choose(source, found, "BasisCurves")
         if notes is not None:
             notes += _unused(source, chosen)
@@ -85,7 +86,7 @@ def curves_at(source: Source, prim: Usd.Prim, time: Usd.TimeCode) -> Curves:
         _add(curves, sampling, name, values, primvar.GetInterpolation(), f"{where}: {primvar.GetName()}")
     _add_widths(curves, sampling, source, prim, time)
     _assign_ids(curves)
-    return curves
+    return curves.check(where)
 
 
 def points_at(source: Source, prim: Usd.Prim, time: Usd.TimeCode) -> NDArray[np.float64]:

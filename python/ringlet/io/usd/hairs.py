@@ -37,7 +37,7 @@ from ringlet.io.usd.on_demand import HAIRS, OnDemand, on_demand_prims
 from ringlet.io.usd.pose import rest_time
 from ringlet.io.usd.stage import Source, prims, reading
 from ringlet.io.usd.stream import StreamWriter
-from ringlet.io.usd.surfaces import shown_surfaces
+from ringlet.io.usd.surfaces import filled, shown_surfaces
 from ringlet.io.usd.values import Types, set_primvar
 
 LOD = "LOD"  # variant set of /groom/hairs, with the variants LOD0, LOD1, … from the finest on
@@ -189,7 +189,7 @@ def _hair_prims(source: Source) -> list[Usd.Prim]:
     if own := source.stage.GetPrimAtPath(HAIRS):
         return [own] if UsdGeom.BasisCurves(own) else [prim for prim in own.GetChildren() if UsdGeom.BasisCurves(prim)]
     shown = (UsdGeom.Tokens.default_, UsdGeom.Tokens.render)
-    found = (prim for prim in prims(source.stage.GetPseudoRoot()) if UsdGeom.BasisCurves(prim))
+    found = filled(prim for prim in prims(source.stage.GetPseudoRoot()) if UsdGeom.BasisCurves(prim))
     return [prim for prim in found if UsdGeom.Imageable(prim).ComputePurpose() in shown]
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pxr import Usd, UsdGeom
 
-from ringlet.io.usd.surfaces import SHOWN, is_surface
+from ringlet.io.usd.surfaces import SHOWN, is_empty, is_surface
 from ringlet.io.usd.values import local_to_world, read_time
 
 # Prototypes are often abstract or undefined, so that they are drawn as instances only.
@@ -60,6 +60,6 @@ def _surfaces_below(root: Usd.Prim) -> list[Usd.Prim]:
         hidden = imageable and imageable.GetVisibilityAttr().Get() == UsdGeom.Tokens.invisible
         if hidden or UsdGeom.PointInstancer(prim):
             walk.PruneChildren()
-        if not hidden and is_surface(prim) and imageable.ComputePurpose() in SHOWN:
+        if not hidden and is_surface(prim) and not is_empty(prim) and imageable.ComputePurpose() in SHOWN:
             found.append(prim)
     return found

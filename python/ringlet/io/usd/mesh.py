@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pxr import Usd, UsdGeom, Vt
 
+from ringlet.data.attributes import check_attribute
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Clip, Mesh
 from ringlet.data.stage import StageSpace
@@ -22,7 +23,7 @@ from ringlet.io.usd.place import Place
 from ringlet.io.usd.pose import posed_points, rest_time
 from ringlet.io.usd.refinement import unrefined
 from ringlet.io.usd.stage import Source, choose, find_prim, prims, reading
-from ringlet.io.usd.surfaces import is_surface, passed_over, shown_surfaces
+from ringlet.io.usd.surfaces import filled, is_surface, passed_over, shown_surfaces
 from ringlet.io.usd.triangles import Triangles
 from ringlet.io.usd.values import (
     Types,
@@ -131,7 +132,7 @@ def _body_at(source: Source, prim: Usd.Prim, frames: tuple[int, int] | None, fps
 def select_mesh(source: Source, name: str | None) -> Usd.Prim:
     """The mesh prim at a path, or the only one at or below it; raises UserError for none or several."""
     root = source.stage.GetPseudoRoot() if name is None else find_prim(source, name)
-    meshes = [prim for prim in prims(root) if UsdGeom.Mesh(prim)]
+    meshes = filled(prim for prim in prims(root) if UsdGeom.Mesh(prim))
     scalps = [prim for prim in meshes if SCALP in _subsets(prim)]
     return choose(source, scalps if len(scalps) == 1 else meshes, "Mesh")
 
@@ -147,7 +148,7 @@ def surface_paths(path: Path | str, names: Sequence[str], what: str) -> list[str
 
 def surfaces_below(source: Source, name: str) -> list[Usd.Prim]:
     """Meshes and point instancers at and below a path; raises UserError when there is none."""
-    surfaces = [prim for prim in prims(find_prim(source, name)) if is_surface(prim)]
+    surfaces = filled(prim for prim in prims(find_prim(source, name)) if is_surface(prim))
     if not surfaces:
         raise UserError(f"{source.path}: there is no Mesh at or below {name}; name one, or a prim above one")
     return surfaces
@@ -295,12 +296,16 @@ def _regions(prim: Usd.Prim, time: Usd.TimeCode, surface: Triangles) -> dict[str
 
 
 def _color(prim: Usd.Prim, time: Usd.TimeCode, surface: Triangles) -> dict[str, Any]:
-    """Display colour of the mesh and, if it varies, of each vertex: the mean of the vertex's corners."""
+    """Display colour of the mesh and, if it varies, of each vertex: the mean of the vertex's corners.
+
+    Raises UserError for colours that are not finite or negative.
+    """
     primvar = UsdGeom.PrimvarsAPI(prim).FindPrimvarWithInheritance("displayColor")
     values = flattened(primvar, time) if primvar else None
     colors = np.array(values if values is not None else [], np.float64).reshape(-1, 3)
-    if len(colors) == 0 or not np.isfinite(colors).all():
+    if len(colors) == 0:
         return {}
+    check_attribute("displayColor", colors, surface.where, "value", lambda row: f"value {row}")
     color = dict(color=tuple(map(float, colors.mean(axis=0))))
     interpolation = primvar.GetInterpolation()
     if interpolation == UsdGeom.Tokens.constant or len(colors) != surface.count(interpolation):

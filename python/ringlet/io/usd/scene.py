@@ -28,7 +28,7 @@ from ringlet.io.usd.on_demand import OnDemand, on_demand_prims
 from ringlet.io.usd.place import Place
 from ringlet.io.usd.pose import motion_samples, rest_time
 from ringlet.io.usd.stage import Source, layer_files, new_stage, prims, reading, reading_more, writing
-from ringlet.io.usd.surfaces import shown_surfaces
+from ringlet.io.usd.surfaces import is_empty, shown_surfaces
 from ringlet.io.usd.values import Types, set_primvar
 from ringlet.io.usd.velocities import Velocities
 
@@ -57,6 +57,7 @@ def open_usd_scene(path: Path) -> Iterator[HairScene]:
         if source.stage.GetPrimAtPath(LOCKS):
             found = [prim for prim in found if str(prim.GetPath()) != GUIDES]
         found = [prim for prim in found if UsdGeom.Imageable(prim).ComputeVisibility() != UsdGeom.Tokens.invisible]
+        found = [prim for prim in found if not is_empty(prim)]
         surfaces = shown_surfaces(source)
         times = [time for prim in found for time in _posed_at(source, prim)]
         if not found:
@@ -73,7 +74,7 @@ def open_usd_scene(path: Path) -> Iterator[HairScene]:
 
 
 def _curve_set(source: Source, prim: Usd.Prim) -> CurveSet:
-    curves = curves_at(source, prim, rest_time(source, prim)).check(source.where(prim))
+    curves = curves_at(source, prim, rest_time(source, prim))
     guide = UsdGeom.Imageable(prim).ComputePurpose() in (UsdGeom.Tokens.guide, UsdGeom.Tokens.proxy)
     name = "guides" if str(prim.GetPath()) == LOCKS else prim.GetName()
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator
 
 from pxr import Usd, UsdGeom
 
@@ -16,6 +16,22 @@ CURVES = (UsdGeom.Curves, UsdGeom.Points)  # geometry without a surface that hai
 def is_surface(prim: Usd.Prim) -> bool:
     """Whether a prim is a mesh, or instances of meshes."""
     return bool(UsdGeom.Mesh(prim) or UsdGeom.PointInstancer(prim))
+
+
+def is_empty(prim: Usd.Prim) -> bool:
+    """Whether a mesh has no faces, an instancer no instances, or a prim of curves no curves: it shows nothing."""
+    mesh, instancer, curves = UsdGeom.Mesh(prim), UsdGeom.PointInstancer(prim), UsdGeom.Curves(prim)
+    if mesh:
+        listed = mesh.GetFaceVertexCountsAttr()
+    else:
+        listed = instancer.GetProtoIndicesAttr() if instancer else curves.GetCurveVertexCountsAttr()
+    return not any(listed.Get(time) for time in (Usd.TimeCode.Default(), *listed.GetTimeSamples()))
+
+
+def filled(prims: Iterable[Usd.Prim]) -> list[Usd.Prim]:
+    """The prims that are not empty; where all of them are, they stay, and whoever reads one refuses it."""
+    every = list(prims)
+    return [prim for prim in every if not is_empty(prim)] or every
 
 
 def is_shown(prim: Usd.Prim) -> bool:
@@ -40,7 +56,7 @@ def shown_root(source: Source) -> Usd.Prim:
 
 def shown_surfaces(source: Source) -> list[Usd.Prim]:
     """Surfaces that are visible in a render, under the default prim."""
-    return [prim for prim in prims(shown_root(source)) if is_surface(prim) and is_shown(prim)]
+    return [prim for prim in prims(shown_root(source)) if is_surface(prim) and is_shown(prim) and not is_empty(prim)]
 
 
 def passed_over(source: Source, root: Usd.Prim | None = None, named: Collection[str] = ()) -> Iterator[str]:
