@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -14,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet.api.conversion import source_space_of
-from ringlet.api.progress import Progress
+from ringlet.api.progress import Progress, stage
 from ringlet.data import limits
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.errors import UserError
@@ -98,20 +96,19 @@ def adopt(
         limits.check_count("locks", locks, 1_000_000)
     stem = target.name.removesuffix(".toml").removesuffix(".recipe")
     files = {name: target.with_name(f"{stem}.{name}.usdc") for name in ("guides", "hairs", "scalp")}
-    step = _Steps(progress)
-    with step("read"):
+    with stage(progress, "read"):
         space = source_space_of(source, source_unit, source_up)
         hair, scalp, scalp_table, prim = _read(source, head, mesh, space, files)
         for path in (target, *files.values()):
             check_place(path)
-    with step("clumps"):
+    with stage(progress, "clumps"):
         clumps = find_clumps(hair.points, hair.lengths, hair.curves.curve, locks)
-    with step("curls"):
+    with stage(progress, "curls"):
         guides, coils = _guides(hair, clumps, scalp)
     text = to_toml(_tables(stem, files, scalp_table, coils, hair, _largest_distance(scalp, guides)))
-    with step("groom"):
+    with stage(progress, "groom"):
         groom = _fitted(text, target, scalp, guides, hair.points[clumps.middle])
-    with step("hairs"):
+    with stage(progress, "hairs"):
         error = _add_hairs(groom, hair, clumps)
     if prim is not None:
         io.write_head(source, prim, files["scalp"])
@@ -177,21 +174,6 @@ def is_finished_hair(path: Path | str) -> bool:
     if Path(path).suffix.lower() in (".abc", ".hair", ".tfx", ".obj"):
         return True
     return Path(path).suffix.lower() in (".usd", ".usda", ".usdc", ".usdz") and not io.is_groom(path)
-
-
-class _Steps:
-    """Reports stages to a function of progress."""
-
-    def __init__(self, progress: Progress | None) -> None:
-        self._progress = progress
-
-    @contextmanager
-    def __call__(self, name: str) -> Iterator[None]:
-        if self._progress:
-            self._progress(name, 0, 1)
-        yield
-        if self._progress:
-            self._progress(name, 1, 1)
 
 
 def _read(

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -22,8 +23,9 @@ STILL_FRAME = 22  # in the middle of the quick turn
 STILL_SECONDS = 110.0  # a slow machine gets a noisier picture, not a longer wait
 MOVING = 1 / 6  # share of the hairs that move in hair.usdc, which keeps it small; the still has all of them
 
-# The share of each stage in the total time, as measured; only the overall bar depends on it.
-SHARES = {"groom": 1, "loft": 2, "simulate": 21, "hairs": 1, "still": 48, "sheet": 27}
+# Seconds of each stage, as measured on two cores; only the overall bar depends on them.
+SECONDS = {"groom": 2.0, "loft": 5.0, "simulate": 48.0, "hairs": 2.0, "still": STILL_SECONDS, "sheet": 62.0}
+TRUSTED = 5.0  # seconds of work that say how fast this machine is
 
 
 def run_demo(folder: Path | str, *, progress: api.Progress | None = None) -> Run:
@@ -32,21 +34,22 @@ def run_demo(folder: Path | str, *, progress: api.Progress | None = None) -> Run
     example = share("examples/child")
     groom_file, cache_file, hair_file = folder / "groom.usdc", folder / "cache.usdc", folder / "hair.usdc"
     rest_file, still_file, sheet_file = folder / "ribbon.rest.usdc", folder / "still.png", folder / "sheet.png"
+    overall = Overall(progress)
     with Run("demo", folder) as run:
         with run.stage("groom", groom_file, "groom guides over the head"):
-            groom = api.build_groom(example / "ribbon.recipe.toml", progress=_overall("groom", progress))
+            groom = api.build_groom(example / "ribbon.recipe.toml", progress=overall.of("groom"))
             api.write_groom(groom, groom_file)
             run.count(guides=len(groom.guides), locks=len(groom.locks))
         shot = balanced(api.read_shot(example / "ribbon.shot.toml"), rest_file)
         with run.stage("loft", rest_file, "the shape that guides remember, with which they hang as groomed"):
-            api.write_loft(api.loft(shot, groom, progress=_overall("loft", progress)), shot, rest_file)
+            api.write_loft(api.loft(shot, groom, progress=overall.of("loft")), shot, rest_file)
         with run.stage("simulate", cache_file, "the guides and a ribbon in motion"), _aside(folder) as checkpoints:
-            inner = _overall("simulate", progress)
+            inner = overall.of("simulate")
             record = api.write_simulation(shot, groom, groom_file, cache_file, checkpoints=checkpoints, progress=inner)
             run.count(frames=len(record.frames))
             run.simulated(record)
         with run.stage("hairs", hair_file, f"hairs in motion, {MOVING:.0%} of all, each wider"):
-            inner, clip = _overall("hairs", progress), (FIRST_FRAME, shot.frames[1])
+            inner, clip = overall.of("hairs"), (FIRST_FRAME, shot.frames[1])
             api.write_hairs(
                 groom_file, hair_file, cache=cache_file, frames=clip, fraction=MOVING, wider=True, progress=inner
             )
@@ -61,16 +64,14 @@ def run_demo(folder: Path | str, *, progress: api.Progress | None = None) -> Run
                 still_file,
                 frame=STILL_FRAME,
                 seconds=STILL_SECONDS,
-                progress=_overall("still", progress),
+                progress=overall.of("still"),
             )
             run.count(hairs=counts["hairs"], points=counts["points"])
             run.pictured(
                 still_file, f"Frame {STILL_FRAME}: the head in the middle of a quick turn, a ribbon in the hair."
             )
         with run.stage("sheet", sheet_file, "the clip at a glance"):
-            api.write_sheet(
-                hair_file, sheet_file, title="A nod, a quick turn and a hop", progress=_overall("sheet", progress)
-            )
+            api.write_sheet(hair_file, sheet_file, title="A nod, a quick turn and a hop", progress=overall.of("sheet"))
             run.pictured(sheet_file, "The clip: a nod, a quick turn and a hop.")
     return run
 
@@ -87,16 +88,43 @@ def _aside(folder: Path) -> Iterator[Path]:
         yield Path(aside)
 
 
-def _overall(stage: str, progress: api.Progress | None) -> api.Progress | None:
-    """Reports the progress of a stage and, in per cent, of the whole demo."""
-    if progress is None:
-        return None
-    names = list(SHARES)
-    before = sum(SHARES[name] for name in names[: names.index(stage)])
+class Overall:
+    """The progress of the whole demo in per cent of its time: so far, and as it is expected on a machine of this speed.
 
-    def report(name: str, done: int, total: int) -> None:
-        progress("demo", round(before + SHARES[stage] * done / max(total, 1)), 100)
-        progress(name, done, total)
+    The still is limited in time, so a slow machine takes no longer over it.
+    """
 
-    progress("demo", before, 100)
-    return report
+    def __init__(self, progress: api.Progress | None, clock: Callable[[], float] = time.monotonic) -> None:
+        self._progress, self._clock = progress, clock
+        self._left = dict(SECONDS)
+        self._began = clock()
+        self._limited = 0.0  # seconds that the still has taken
+
+    def of(self, stage: str) -> api.Progress | None:
+        """What the stage that begins reports to; those before it are done."""
+        if self._progress is None:
+            return None
+        progress, start = self._progress, self._clock()
+        for earlier in list(SECONDS)[: list(SECONDS).index(stage)]:
+            self._left[earlier] = 0.0
+
+        def report(name: str, done: int, total: int) -> None:
+            if total > 1:
+                self._left[stage] = SECONDS[stage] * (1.0 - done / total)
+            if stage == "still":
+                self._limited = self._clock() - start
+            progress("demo", self.percent(), 100)
+            progress(name, done, total)
+
+        progress("demo", self.percent(), 100)
+        return report
+
+    def percent(self) -> int:
+        """Per cent of the expected time that are over; 100 only at the end."""
+        taken = self._clock() - self._began
+        known = sum(SECONDS[name] - left for name, left in self._left.items() if name != "still")
+        slowness = (taken - self._limited + TRUSTED) / (known + TRUSTED)
+        left = sum(
+            seconds * (min(slowness, 1.0) if name == "still" else slowness) for name, seconds in self._left.items()
+        )
+        return 100 if left == 0.0 else min(99, int(100.0 * taken / (taken + left)))

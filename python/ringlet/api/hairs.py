@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet.api.grooms import read_groom
-from ringlet.api.progress import Progress
+from ringlet.api.progress import Progress, stage
 from ringlet.api.shots import scalp_clip
 from ringlet.data import limits
 from ringlet.data.binding import check_roots, root_places
@@ -148,19 +148,22 @@ def write_hairs(
             raise UserError(f"{groom}: its hairs are made already; ask its groom or its cache for other ones")
         levels = [io.read_on_demand(groom)]
     else:
-        levels = [build_hairs(locks, fraction=fraction, wider=wider, points=points)]
-        for level in LEVELS[1:] if lod else ():
-            hairs = build_hairs(locks, fraction=level.share, wider=True, points=points, point_share=level.points)
-            levels.append(hairs)
+        with stage(progress, "lay hairs"):
+            levels = [build_hairs(locks, fraction=fraction, wider=wider, points=points)]
+            for level in LEVELS[1:] if lod else ():
+                hairs = build_hairs(locks, fraction=level.share, wider=True, points=points, point_share=level.points)
+                levels.append(hairs)
     finest = levels[0]
     if measures is not None:
         if not expanded:
-            measures |= measure_hairs(locks, hairs=finest if fraction == 1.0 else None)
+            with stage(progress, "measure cover"):
+                measures |= measure_hairs(locks, hairs=finest if fraction == 1.0 else None)
         if camera is not None:
             measures["fraction"] = fraction
     rest = _Motion(None, locks.locks.points, locks.scalp.points, _surfaces_at_rest(groom, locks))
-    for hairs in levels:
-        hairs.curves.points = hairs.deformed(rest.locks, rest.scalp, surfaces=rest.surfaces)
+    with stage(progress, "keep out of surfaces"):
+        for hairs in levels:
+            hairs.curves.points = hairs.deformed(rest.locks, rest.scalp, surfaces=rest.surfaces)
     under, written = Path(groom if cache is None else cache), 0
     if expanded:
         under = io.layer_under_on_demand(groom)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import threading
 import time
+from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
@@ -23,16 +24,48 @@ SECONDS_BETWEEN_LINES = 5.0
 LONG_STEP = 10.0  # seconds, after which a step is reported while it lasts
 
 
+class Pace:
+    """The time that a stage takes, from when its steps ended.
+
+    Steps that were done at the first report belong to an earlier run, and those of the first half of the time may be of
+    another kind, such as a pre-roll, so neither counts.
+    """
+
+    def __init__(self, began: float) -> None:
+        self.began = began
+        self._ended: deque[tuple[float, int]] = deque()  # when a step ended [s], and how many were done then
+
+    def report(self, now: float, done: int) -> None:
+        """Takes note of the number of steps that are done."""
+        self._ended.append((now, done))
+        while len(self._ended) > 2 and self._ended[1][0] <= 0.5 * (self.began + now):
+            self._ended.popleft()
+
+    @property
+    def each(self) -> float | None:
+        """Seconds of a step; None while they are unknown."""
+        (first, before), (last, done) = self._ended[0], self._ended[-1]
+        return (last - first) / (done - before) if done > before else None
+
+    def left(self, now: float, total: int) -> str:
+        """The remaining time in words, empty while it is unknown."""
+        last, done = self._ended[-1]
+        if self.each is None or done >= total:
+            return ""
+        seconds = max(self.each * (total - done) - (now - last), 0.0)
+        return f"about {seconds:.0f} s left" if seconds < 100.0 else f"about {seconds / 60.0:.0f} min left"
+
+
 class Rate(ProgressColumn):
     """Steps per second, or seconds per step."""
 
     def render(self, task: Task) -> Text:
         """The speed of a task, empty while it is unknown."""
-        speed = task.finished_speed or task.speed
-        if not speed or task.total is None or task.total < 2:
+        each = task.fields["pace"].each
+        if not each or task.total is None or task.total < 2:
             return Text("")
         return Text(
-            f"{speed:,.0f}/s" if speed >= 10 else f"{speed:.1f}/s" if speed >= 1 else f"{1 / speed:.1f} s each", "dim"
+            f"{1 / each:,.0f}/s" if each <= 0.1 else f"{1 / each:.1f}/s" if each <= 1 else f"{each:.1f} s each", "dim"
         )
 
 
@@ -43,8 +76,7 @@ class Clock(ProgressColumn):
         """Seconds left, or the seconds that it took."""
         if task.finished:
             return Text(f"{task.finished_time:.1f} s", "cyan")
-        left = task.time_remaining
-        return Text("" if left is None else f"{left:.0f} s left", "cyan")
+        return Text(task.fields["pace"].left(time.monotonic(), int(task.total or 0)), "cyan")
 
 
 class LongStep(ProgressColumn):
@@ -76,10 +108,13 @@ def on_terminal() -> Iterator[Callable[[str, int, int], None]]:
     )
     with Progress(*columns, console=Console(stderr=True)) as bars:
         tasks = {}
+        paces: dict[str, Pace] = {}
 
         def report(stage: str, done: int, total: int) -> None:
             if stage not in tasks:
-                tasks[stage] = bars.add_task(stage, total=total, since=time.monotonic())
+                paces[stage] = Pace(time.monotonic())
+                tasks[stage] = bars.add_task(stage, total=total, since=time.monotonic(), pace=paces[stage])
+            paces[stage].report(time.monotonic(), done)
             bars.update(tasks[stage], completed=done, total=total, since=time.monotonic())
 
         yield report
@@ -108,7 +143,7 @@ class Lines:
     """Progress in lines on the error stream."""
 
     def __init__(self) -> None:
-        self._began: dict[str, float] = {}
+        self._paces: dict[str, Pace] = {}
         self._printed: dict[str, float] = {}
         self._ended: set[str] = set()
         self._step: tuple[str, int, int, float] | None = None  # stage, steps done, their number, when the last ended
@@ -118,7 +153,8 @@ class Lines:
         """Prints a line if the stage ends, or if the last line is some seconds old."""
         with self._lock:
             now = time.monotonic()
-            start = self._began.setdefault(stage, now)
+            pace = self._paces.setdefault(stage, Pace(now))
+            pace.report(now, done)
             since = now - self._printed.setdefault(stage, now)
             self._step = (stage, done, total, now) if done < total else None
             if stage in self._ended or (done < total and since < SECONDS_BETWEEN_LINES):
@@ -126,8 +162,8 @@ class Lines:
             self._printed[stage] = now
             if done >= total:
                 self._ended.add(stage)
-            left = f", {(now - start) / done * (total - done):.0f} s left" if 0 < done < total else ""
-            print(f"{stage}: {done}/{total}, {now - start:.1f} s{left}", file=sys.stderr, flush=True)
+            left = f", {words}" if (words := pace.left(now, total)) else ""
+            print(f"{stage}: {done}/{total}, {now - pace.began:.1f} s{left}", file=sys.stderr, flush=True)
 
     def report_long_step(self) -> None:
         """Prints a line if the step in progress takes long, and the last line is as old."""

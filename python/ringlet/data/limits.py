@@ -15,6 +15,7 @@ FRAMES = 100_000  # of a shot
 FRAME = 10_000_000  # largest distance of a frame number from zero
 FARTHEST = 1e9  # coordinate of a point, in the unit of its file
 POINTS = 10_000  # of a lock
+SAMPLES_OF_SCALP = 1_000_000  # guides, locks, clump centres and what else is spread over a scalp
 ID = 2**53  # largest id of a curve, which the page keeps as a double
 
 

@@ -136,9 +136,9 @@ class EdgeScalp(Scalp):
     def _width(self, u: Array) -> Array:
         return self.edge.width.value * self.edge.width.along(u)
 
-    def count_for_spacing(self, spacing: float) -> int:
+    def count_for_spacing(self, spacing: float, what: str) -> int:
         """Number of roots at a mean spacing [m]: along the lines, or over the band where that is wider."""
-        return max(1, round(self.length / spacing), super().count_for_spacing(spacing))
+        return max(1, round(self.length / spacing), super().count_for_spacing(spacing, what))
 
     def sample(self, count: int, seed: int, density: str | None = None, what: str = "density") -> Samples:
         """Roots evenly along the lines, after a painted density if one is named; see ``Scalp.sample``.

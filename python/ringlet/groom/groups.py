@@ -22,20 +22,26 @@ Apart = Annotated[
 ]
 
 
-def leaders(shapes: NDArray, size: float, apart: float, scalp: Scalp, seed: int) -> NDArray[np.integer]:
+def leaders(
+    shapes: NDArray, size: float, apart: float, scalp: Scalp, seed: int, what: str = "size"
+) -> NDArray[np.integer]:
     """Row of each lock's leader, its own where none of the nearest leans alike, shape (count,).
 
-    Leaders are the locks nearest to samples of the scalp.
+    Leaders are the locks nearest to samples of the scalp. Samples that are twice as dense as the locks make every lock
+    a leader, so they are not made.
 
     shapes: points of locks [m], shape (count, points, 3)
     size:   distance of leaders [m]
     apart:  angle by which a lock may lean away from its leader [degrees]
+    what:   setting that gives the distance, for messages
     """
     roots, lean = shapes[:, 0], unit(shapes[:, shapes.shape[1] // 3] - shapes[:, 0])
-    _, triangle, barycentric = scalp.sample(scalp.count_for_spacing(size), seed)
+    own = np.arange(len(roots))
+    if len(roots) == 1 or 2.0 * size < np.median(KDTree(roots).query(roots, k=2)[0][:, 1]):
+        return own
+    _, triangle, barycentric = scalp.sample(scalp.count_for_spacing(size, what), seed)
     leading = np.unique(KDTree(roots).query(scalp.positions(triangle, barycentric))[1])
     _, choice = KDTree(roots[leading]).query(roots, k=min(CHOICE, len(leading)))
     near = leading[choice].reshape(len(roots), -1)
     alike = np.einsum("lkx,lx->lk", lean[near], lean) >= np.cos(np.radians(apart))
-    own = np.arange(len(roots))
     return np.where(alike.any(axis=1), near[own, alike.argmax(axis=1)], own)

@@ -56,7 +56,9 @@ class Row:
 def middle_rows(division: Division, scalp: Scalp) -> dict[int, Row]:
     """The row along the middle of each section, from its front to its back."""
     size = division.sections.size
-    _, triangle, barycentric = scalp.sample(scalp.count_for_spacing(size / SAMPLES_A_SIDE), division.seed)
+    _, triangle, barycentric = scalp.sample(
+        scalp.count_for_spacing(size / SAMPLES_A_SIDE, "locks.sections.size"), division.seed
+    )
     places = scalp.positions(triangle, barycentric)
     at = division.at(places)
     rows = {}

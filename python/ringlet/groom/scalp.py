@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet import _core
+from ringlet.data import limits
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
@@ -173,9 +174,18 @@ class Scalp:
         """Attributes of curves with these roots (n, 3) [m], which masks and values can use; none for an area."""
         return {}
 
-    def count_for_spacing(self, spacing: float) -> int:
-        """Number of uniform samples of the region at a mean spacing [m]."""
-        return max(1, round(0.75 * self.area / (0.5 * np.sqrt(3.0) * spacing**2)))  # 0.75 of the densest packing
+    def count_for_spacing(self, spacing: float, what: str) -> int:
+        """Number of uniform samples of the region at a mean spacing [m]; raises UserError for too many.
+
+        what: setting that gives the spacing, for the message
+        """
+        count = 0.75 * self.area / (0.5 * np.sqrt(3.0) * spacing**2)  # 0.75 of the densest packing
+        if count > limits.SAMPLES_OF_SCALP:
+            raise UserError(
+                f"{what} puts {count:.3g} samples on {self.where}, {spacing:.3g} m apart; must be at most "
+                f"{limits.SAMPLES_OF_SCALP:,}: make it larger"
+            )
+        return max(1, round(count))
 
     def positions(self, triangle: NDArray, barycentric: NDArray, points: NDArray | None = None) -> NDArray[np.float64]:
         """Positions of barycentric coordinates [m], shape (k, 3), in the rest pose or on given mesh points."""

@@ -75,7 +75,9 @@ class Sections(Section):
     def divide(self, scalp: Scalp, seed: int, helper: Callable[[str, str], Curves]) -> Division:
         """Divides the region of the scalp; ``helper`` returns the helper curves of a name for a setting."""
         chart = Chart.of(scalp)
-        _, triangle, barycentric = scalp.sample(scalp.count_for_spacing(self.size / SAMPLES_A_SIDE), seed)
+        _, triangle, barycentric = scalp.sample(
+            scalp.count_for_spacing(self.size / SAMPLES_A_SIDE, "locks.sections.size"), seed
+        )
         places = scalp.positions(triangle, barycentric)
         drawn = None
         if self.part_lines is not None:

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace ringlet {
 namespace {
@@ -15,6 +16,8 @@ constexpr size_t together = 8;    // points per box query
 constexpr int rounds = 16;        // of retracting edges
 constexpr int gentle = 8;         // of these bisect for the least retraction; the others retract onto the lock
 constexpr int halvings = 6;       // steps of the bisection
+constexpr size_t few = 8;         // hairs that are not divided further
+constexpr size_t crowded = 64;    // triangles near a point of some hairs, on average, from which these are divided
 
 struct Facet {
     Vec3 corner, a, b, normal; // a corner, the edges from it, and their cross product, not normalised
@@ -61,28 +64,42 @@ struct Box {
 // The hairs of one lock. Boxes and triangles of a point are those of the edge after it as well.
 class LockHairs {
 public:
-    LockHairs(const HairLayout &layout, const TriangleTree &tree, double margin)
-        : layout_(layout), tree_(tree), margin_(margin), n_(layout.hold.size()), boxes_(n_), facets_(n_), places_(n_),
-          hair_(n_), segment_(n_), share_(n_) {}
+    LockHairs(const HairLayout &layout, const TriangleTree &tree, double margin, float *hairs, std::uint8_t *shares)
+        : layout_(layout), tree_(tree), margin_(margin), n_(layout.hold.size()), all_(hairs), shares_(shares), boxes_(n_),
+          facets_(n_), places_(n_), hair_(n_), segment_(n_), share_(n_) {}
 
-    // Returns the number of hairs that moved, and writes the shares of their points (of 255) unless `shares` is null.
-    int keep_hairs(View<Vec3f> lock, int first, int count, float *hairs, std::uint8_t *shares) {
+    // Returns the number of hairs that moved, and writes the shares of their points (of 255) unless these are null.
+    int keep_hairs(View<Vec3f> lock, int first, int count) {
         if (lock.size() < 2 || count == 0) return 0;
-        bound_hairs(hairs, count);
-        find_near_triangles(lock, first, count);
-        if (near_.empty()) return 0;
+        order_.resize(count);
+        std::iota(order_.begin(), order_.end(), first);
+        std::ranges::stable_sort(order_, {}, [&](int hair) { return layout_.join[hair]; });
+        return keep_some(lock, order_);
+    }
+
+private:
+    float *points_of(int hair) const { return all_ + 3 * n_ * hair; }
+
+    // Keeps some hairs of the lock. Those that join a row grow all along it, so that their common box has most triangles of
+    // the row: they are halved, in the order in which they join, until few triangles are near.
+    int keep_some(View<Vec3f> lock, std::span<const int> some) {
+        bound_hairs(some);
+        const size_t triangles = find_near_triangles(lock, some);
+        if (triangles > crowded * near_.size() && some.size() > few) {
+            const size_t half = some.size() / 2;
+            return keep_some(lock, some.first(half)) + keep_some(lock, some.subspan(half));
+        }
         int moved = 0;
-        for (int i = 0; i < count; ++i) {
-            if (!keep_hair(lock, first + i, hairs + 3 * n_ * i)) continue;
+        for (const int hair : near_.empty() ? std::span<const int>() : some) {
+            if (!keep_hair(lock, hair)) continue;
             ++moved;
-            if (shares)
-                std::ranges::transform(share_, shares + n_ * i,
+            if (shares_)
+                std::ranges::transform(share_, shares_ + n_ * hair,
                                        [](double share) { return static_cast<std::uint8_t>(255.0 * share); });
         }
         return moved;
     }
 
-private:
     // Place on the lock of the k-th point of a hair, in segments from the root.
     float place_along(View<Vec3f> lock, int hair, size_t k) const {
         const float join = layout_.join[hair], last = static_cast<float>(lock.size() - 1), ends = static_cast<float>(n_ - 1);
@@ -104,12 +121,12 @@ private:
     }
 
     // Computes bounds on the k-th points of all hairs, and on their second differences.
-    void bound_hairs(const float *hairs, int count) {
+    void bound_hairs(std::span<const int> some) {
         const size_t size = 3 * n_;
-        low_.assign(hairs, hairs + size), high_ = low_;
+        low_.assign(points_of(some[0]), points_of(some[0]) + size), high_ = low_;
         bend_.assign(size, 0.0f);
-        for (int i = 0; i < count; ++i) {
-            const float *x = hairs + size * i;
+        for (const int hair : some) {
+            const float *x = points_of(hair);
             for (size_t j = 0; j < size; ++j) {
                 low_[j] = std::min(low_[j], x[j]);
                 high_[j] = std::max(high_[j], x[j]);
@@ -118,14 +135,14 @@ private:
         }
     }
 
-    // Finds the triangles near the space between the hairs and their lock at each point.
-    void find_near_triangles(View<Vec3f> lock, int first, int count) {
+    // Finds the triangles near the space between the hairs and their lock at each point. Returns their number over all points.
+    size_t find_near_triangles(View<Vec3f> lock, std::span<const int> some) {
         const auto bend = [&](size_t k) { return Eigen::Map<const Vec3f>(&bend_[3 * k]).norm(); };
         const size_t last = lock.size() - 1;
         for (size_t k = 0; k < n_; ++k) {
             const size_t after = std::min(k + 1, n_ - 1);
             float least = static_cast<float>(last), greatest = 0.0f;
-            for (int hair = first; hair < first + count; ++hair) {
+            for (const int hair : some) {
                 least = std::min(least, place_along(lock, hair, k));
                 greatest = std::max(greatest, place_along(lock, hair, after));
             }
@@ -143,6 +160,7 @@ private:
             boxes_[k] = {box.low.array() - wider, box.high.array() + wider};
         }
         near_.clear();
+        size_t triangles = 0;
         for (size_t begin = 0; begin < n_; begin += together) {
             const size_t end = std::min(begin + together, n_);
             Box all;
@@ -152,18 +170,20 @@ private:
                 if (layout_.hold[k] == 1.0f) continue;
                 if (find(boxes_[k]); found_.empty()) continue;
                 near_.push_back(k);
+                triangles += found_.size();
                 facets_[k].clear();
                 for (const int triangle : found_) facets_[k].push_back(facet(tree_.mesh(), triangle));
             }
         }
+        return triangles;
     }
     void find(const Box &box) {
         found_.clear();
         tree_.overlapping(box.low.cast<double>(), box.high.cast<double>(), found_);
     }
 
-    bool keep_hair(View<Vec3f> lock, int number, float *hair) {
-        Eigen::Map<Eigen::Matrix3Xf> points(hair, 3, static_cast<Eigen::Index>(n_));
+    bool keep_hair(View<Vec3f> lock, int number) {
+        Eigen::Map<Eigen::Matrix3Xf> points(points_of(number), 3, static_cast<Eigen::Index>(n_));
         std::ranges::fill(share_, 1.0);
         bool separated = false, pierced = false;
         for (const size_t k : near_) {
@@ -242,6 +262,9 @@ private:
     const TriangleTree &tree_;
     double margin_;
     size_t n_;                               // points of a hair
+    float *all_;                             // points of the hairs of all locks
+    std::uint8_t *shares_;                   // and shares of these points, or null
+    std::vector<int> order_;                 // hairs of the lock as they join it
     std::vector<float> low_, high_, bend_;   // bounds on the points of all hairs, and on their second differences
     std::vector<Box> boxes_;                 // around the space between hairs and lock, at each point
     std::vector<std::vector<Facet>> facets_; // triangles near that space, at the points of near_
@@ -260,14 +283,12 @@ int keep_beside(View<Vec3f> lock_points, View<int> lock_offsets, const HairLayou
     int moved = 0;
 #pragma omp parallel reduction(+ : moved)
     {
-        LockHairs of(layout, tree, margin);
+        LockHairs of(layout, tree, margin, hairs.data(), shares.empty() ? nullptr : shares.data());
 #pragma omp for schedule(dynamic, 8)
         for (int lock = 0; lock < locks; ++lock) {
             const int first = layout.first[lock], begin = lock_offsets[lock];
-            const size_t point = layout.hold.size() * first;
-            moved +=
-                of.keep_hairs(lock_points.subspan(begin, lock_offsets[lock + 1] - begin), first, layout.first[lock + 1] - first,
-                              hairs.data() + 3 * point, shares.empty() ? nullptr : shares.data() + point);
+            moved += of.keep_hairs(lock_points.subspan(begin, lock_offsets[lock + 1] - begin), first,
+                                   layout.first[lock + 1] - first);
         }
     }
     return moved;

@@ -52,6 +52,6 @@ class Clump(Shape):
         tightness = np.minimum(tightness * ramp, 1.0)[:, :, None]
         for level in range(self.levels):
             size = self.size * self.finer**level
-            centre = leaders(points, size, self.apart, context.scalp, context.seed + 1)
+            centre = leaders(points, size, self.apart, context.scalp, context.seed + 1, "clump.size")
             points = points + tightness * (points[centre] - points)
         return points

@@ -117,7 +117,7 @@ class Grown(Guides):
     def make(self, curves: Curves, context: Context) -> Curves:
         """Returns the grown guides, with ids fixed to their roots; ignores ``curves``."""
         scalp = context.scalp
-        count = self.count or scalp.count_for_spacing(self.spacing or 0.025)
+        count = self.count or scalp.count_for_spacing(self.spacing or 0.025, "guides.spacing")
         ids, triangle, barycentric = scalp.sample(count, context.seed, self.density, "guides.density")
         bound = {"root_triangle": triangle, "root_barycentric": barycentric}
         roots = scalp.positions(triangle, barycentric)

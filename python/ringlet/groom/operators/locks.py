@@ -80,7 +80,7 @@ class Locks(Operator):
             return _pack(shapes, curves.ids, *root, attributes)
 
         scalp = context.scalp
-        count = self.count or scalp.count_for_spacing(self.spacing or 0.01)
+        count = self.count or scalp.count_for_spacing(self.spacing or 0.01, "locks.spacing")
         ids, triangle, barycentric = scalp.sample(count, context.seed, self.density, "locks.density")
         fade = self.hairline.of(scalp) if self.hairline is not None else None
         if fade:

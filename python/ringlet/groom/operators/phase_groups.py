@@ -34,7 +34,7 @@ class PhaseGroups(Section):
     def values(self, curves: Curves, context: Context) -> dict[str, NDArray]:
         """Leader and blend settings of each lock, as arguments of the core; each of shape (count,)."""
         shapes = curves.points.reshape(len(curves), -1, 3)
-        leader = leaders(shapes, self.size, self.apart, context.scalp, context.seed + 2)
+        leader = leaders(shapes, self.size, self.apart, context.scalp, context.seed + 2, "phase_groups.size")
         return {
             "leader": leader.astype(np.int32),
             "join": np.minimum(context.values(self, "amount", curves, "phase_groups."), 1.0),
