@@ -17,12 +17,12 @@ from ringlet.data.accessory import Accessory
 from ringlet.data.cache import Cache, CachedCloth
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
-from ringlet.data.regular import check_regular
 from ringlet.data.stage import StageSpace
 from ringlet.io.space import to_metres
 from ringlet.io.usd.clips import clip_at
 from ringlet.io.usd.cloths import ClothPrims, cloth_metadata, read_cloth, set_cloth
 from ringlet.io.usd.curves import OWN, own_curves
+from ringlet.io.usd.damage import check_bytes
 from ringlet.io.usd.groom import LOCKS, VERSION, check_version, groom_prim, read_accessories
 from ringlet.io.usd.mesh import mesh_at
 from ringlet.io.usd.place import Place, placed
@@ -176,7 +176,7 @@ def is_cache(path: Path | str) -> bool:
     """Whether a file is a simulation cache; reads only its metadata."""
     try:
         with reading_more(path):
-            check_regular(path, "give a USD file")
+            check_bytes(path)
             layer = Sdf.Layer.OpenAsAnonymous(str(path), True)  # metadata only
             data = layer.customLayerData.get("ringlet") if layer else None
             return isinstance(data, dict) and "statistics" in data

@@ -31,10 +31,10 @@ from ringlet.data.groom import GROOM as ROW
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Mesh
 from ringlet.data.reads import recorded, unrecorded
-from ringlet.data.regular import check_regular
 from ringlet.data.settings import did_you_mean
 from ringlet.data.stage import StageSpace
 from ringlet.io.usd.curves import define_curves, own_curves, set_display_color, set_points, set_rest, set_roots
+from ringlet.io.usd.damage import check_bytes
 from ringlet.io.usd.mesh import define_mesh, mesh_at, read_usd_mesh, select_mesh
 from ringlet.io.usd.offsets import NAME as OFFSETS_NAME
 from ringlet.io.usd.offsets import define_offsets, offsets_at
@@ -383,7 +383,7 @@ def _check_bound(source: Source, path: str, curves: Curves, scalp: Mesh) -> None
 
 
 def _default_prim(file: Path) -> Sdf.Path:
-    check_regular(file, "give a USD file")
+    check_bytes(file)
     layer = Sdf.Layer.FindOrOpen(str(file)) if file.exists() else None
     return Sdf.Path(f"/{layer.defaultPrim}") if layer and layer.defaultPrim else Sdf.Path.absoluteRootPath
 

@@ -22,9 +22,9 @@ from pxr import Ar, Pcp, Sdf, Tf, Usd, UsdGeom, UsdShade, UsdUtils
 from ringlet.data.errors import UserError
 from ringlet.data.files import check_place, replacing
 from ringlet.data.reads import record
-from ringlet.data.regular import check_regular
 from ringlet.data.stage import StageSpace
 from ringlet.io.subdivision import Refinement
+from ringlet.io.usd.damage import check_bytes, sound_prims
 from ringlet.io.usd.skinning import Skinning
 
 SURFACE, LIMIT, CAGE = "ringlet:surface", "limit", "cage"  # attribute of /groom, and its values
@@ -72,7 +72,7 @@ def reading(path: Path | str, cage: bool | None = None) -> Iterator[Source]:
         raise UserError(f"{path}: there is no such file; check the name")
     if path.is_dir():
         raise UserError(f"{path}: is a folder; give a USD file")
-    check_regular(path, "give a USD file")
+    check_bytes(path)
     if path.is_file() and not path.stat().st_size:
         raise UserError(f"{path}: is empty; write it again or choose another")
     with reading_more(path):
@@ -86,16 +86,31 @@ def reading(path: Path | str, cage: bool | None = None) -> Iterator[Source]:
 
 
 def _check_layers(path: Path) -> list[Sdf.Layer]:
-    """Opens the layers that a file is composed of; raises UserError for one that is no regular file."""
+    """Opens the layers that a file is composed of; raises UserError for one that is damaged or no regular file."""
     names, layers = [str(path)], []
     for name in names:  # grows while it is read
-        check_regular(name, "give a USD file")
+        check_bytes(name)
         with suppress(Tf.ErrorException):  # reported when the stage is opened
+            if Sdf.Layer.Find(name) and (copy := Sdf.Layer.OpenAsAnonymous(name)):
+                sound_prims(copy, name)  # another open stage holds the layer: what will be reloaded is checked apart
             if layer := Sdf.Layer.FindOrOpen(name):
+                own = sound_prims(layer, name)
                 layers.append(layer)
-                found = [layer.ComputeAbsolutePath(asset) for asset in layer.GetCompositionAssetDependencies()]
+                assets = [*layer.GetCompositionAssetDependencies(), *_clip_files(own)]
+                found = [layer.ComputeAbsolutePath(asset) for asset in assets]
                 names += [file for file in found if file not in names]
     return layers
+
+
+def _clip_files(specs: list[Sdf.PrimSpec]) -> Iterator[str]:
+    """Assets of the value clips that a layer names."""
+    for spec in specs:
+        for clips in (spec.GetInfo("clips") if spec.HasInfo("clips") else {}).values():
+            assets = [*clips.get("assetPaths", []), clips.get("manifestAssetPath")]
+            yield from (asset.path for asset in assets if asset)
+            if template := clips.get("templateAssetPath"):  # its number signs stand for the number of a frame
+                folder, pattern = os.path.split(spec.layer.ComputeAbsolutePath(template))
+                yield from map(str, Path(folder).glob(re.sub("#+", "*", pattern)))
 
 
 def _reload(stage: Usd.Stage, path: Path) -> None:

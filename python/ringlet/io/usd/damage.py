@@ -1,0 +1,101 @@
+"""Finds damage in USD files before OpenUSD composes them: it aborts, or takes all memory, on some damaged crates.
+
+A crate (``.usdc``) ends in a table of contents, and each of its sections begins with a count, for which OpenUSD
+reserves memory. Layout: https://github.com/PixarAnimationStudios/OpenUSD, ``pxr/usd/sdf/crateFile.h``.
+"""
+
+from __future__ import annotations
+
+import os
+import struct
+import zipfile
+import zlib
+from pathlib import Path
+from typing import IO, Any
+
+from pxr import Sdf, Tf
+
+from ringlet.data.errors import UserError
+from ringlet.data.regular import check_regular, open_regular
+
+REMEDY = "give a USD file"
+MAGIC, VERSION = b"PXR-USDC", 8  # begin a crate, before the place of its table of contents; bytes of the version
+PLACE, COUNT = struct.Struct("<q"), struct.Struct("<Q")
+SECTION = struct.Struct("<16sqq")  # name, place and size
+MOST_SECTIONS = 64
+COUNTS = {b"TOKENS": 1, b"STRINGS": 1, b"FIELDS": 1, b"FIELDSETS": 1, b"PATHS": 2, b"SPECS": 1}  # that begin a section
+PACKED = 1024  # entries in a byte at most: four whole numbers, which LZ4 packs 255 times
+
+
+def check_bytes(path: Path | str) -> None:
+    """Raises UserError for a file that is not regular, and for a crate whose sections or counts exceed the file.
+
+    The cost is that of a few reads. Crates in packages are checked too; a missing file passes: its reader reports it.
+    """
+    check_regular(path, REMEDY)
+    if not Path(path).is_file():
+        return
+    with open_regular(path, REMEDY, most=None) as file:
+        _check_crate(file, path)
+        if Path(path).suffix.lower() == ".usdz":
+            _check_package(file, path)
+
+
+def _check_package(file: IO[bytes], path: Path | str) -> None:
+    try:
+        package = zipfile.ZipFile(file)
+        for member in package.infolist():
+            with package.open(member) as inner:
+                _check_crate(inner, f"{path}[{member.filename}]")
+    except (zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError, zlib.error) as error:
+        raise _damaged(path, str(error)) from None
+
+
+def _check_crate(file: IO[bytes], where: Path | str) -> None:
+    """Raises UserError for a crate with sections outside the file, or with more entries than a section can hold."""
+    if file.read(len(MAGIC)) != MAGIC:
+        return
+    size = file.seek(0, os.SEEK_END)
+
+    def read(layout: struct.Struct, place: int) -> tuple[Any, ...]:
+        if not 0 <= place <= size - layout.size:
+            raise _damaged(where, f"byte {place} is not among its {size}")
+        file.seek(place)
+        return layout.unpack(file.read(layout.size))
+
+    (contents,) = read(PLACE, len(MAGIC) + VERSION)
+    (sections,) = read(COUNT, contents)
+    if sections > MOST_SECTIONS:
+        raise _damaged(where, f"it has {sections} sections")
+    for row in range(sections):
+        name, start, length = read(SECTION, contents + COUNT.size + row * SECTION.size)
+        if not (0 <= start <= size and 0 <= length <= size - start):
+            raise _damaged(where, f"a section of {length} bytes at {start} is not among its {size}")
+        for k in range(COUNTS.get(name.rstrip(b"\0"), 0)):
+            (count,) = read(COUNT, start + k * COUNT.size)
+            if count > PACKED * length:
+                raise _damaged(where, f"{count} entries are not in {length} bytes")
+
+
+def sound_prims(layer: Sdf.Layer, where: Path | str) -> list[Sdf.PrimSpec]:
+    """All prims of a layer; raises UserError where a child is named without a spec of its own.
+
+    OpenUSD aborts when it composes such a layer.
+    """
+    paths, found = list[Sdf.Path](), list[Sdf.PrimSpec]()
+    try:
+        layer.Traverse(Sdf.Path.absoluteRootPath, paths.append)  # pyright: ignore[reportArgumentType]
+        for path in paths:
+            if path.IsPrimPath() or path.IsPrimVariantSelectionPath() or path.isEmpty:
+                spec = layer.GetObjectAtPath(path)
+                if isinstance(spec, Sdf.PrimSpec):
+                    found.append(spec)
+                elif not spec or path.IsPrimPath():
+                    raise _damaged(where, f"its prim {path} is not there")
+    except Tf.ErrorException:
+        raise _damaged(where, "a spec in it has no valid type") from None
+    return found
+
+
+def _damaged(where: Path | str, what: str) -> UserError:
+    return UserError(f"{where}: cannot be read as USD (damaged: {what}); write it again or choose another")
