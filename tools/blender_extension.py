@@ -11,6 +11,7 @@ import tomllib
 import zipfile
 from pathlib import Path
 
+from ringlet.data import names
 from ringlet.host import link, texts
 
 import ringlet
@@ -21,7 +22,8 @@ SOURCE = Path(__file__).parents[1] / "integrations/blender/ringlet_groom"
 def contents() -> dict[str, str]:
     """Texts of the files of the extension, by name."""
     found = {path.name: path.read_text(encoding="utf-8") for path in sorted(SOURCE.iterdir()) if path.is_file()}
-    found["link.py"] = Path(link.__file__).read_text(encoding="utf-8")
+    for path in map(Path, (link.__file__, names.__file__)):
+        found[path.name] = path.read_text(encoding="utf-8")
     found["schema.json"] = json.dumps(ringlet.schema(), separators=(",", ":"))
     found["looks.json"] = json.dumps(
         {one["name"]: {"group": one["group"], "text": texts.look(one["name"])} for one in texts.looks()}

@@ -16,6 +16,8 @@ from pathlib import Path
 
 import bpy
 import numpy as np
+from mathutils import Vector
+from mathutils.bvhtree import BVHTree
 
 MODULE = "bl_ext.user_default.ringlet_groom"
 LOOK = """
@@ -42,6 +44,9 @@ preset = "brown"
 """
 
 
+FEW = LOOK.replace("count = 24", "count = 8").replace("count = 14", "count = 6").replace("points = 90", "points = 80")
+
+
 def of(name: str):
     """A module of the extension."""
     return importlib.import_module(f"{MODULE}.{name}")
@@ -64,24 +69,25 @@ def settled() -> bool:
     return all(
         not (state := grooming.state_of(head)).busy
         and (grooming.is_made(head, key := grooming.key_of(head)) or (bool(state.message) and state.asked == key))
-        for head in grooming.heads()
+        for head in of("identity").heads()
     )
 
 
-def make_head() -> bpy.types.Object:
+def make_head(name: str = "Kim", x: float = 0.0) -> bpy.types.Object:
     """A ball of 18 cm with a vertex group on its upper half."""
-    bpy.ops.mesh.primitive_uv_sphere_add(segments=16, ring_count=8, radius=0.09)
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=16, ring_count=8, radius=0.09, location=(x, 0.0, 0.0))
+    bpy.context.view_layer.update()
     head = bpy.context.active_object
-    head.name = "Kim"
+    head.name = name
     group = head.vertex_groups.new(name="scalp")
     group.add([v.index for v in head.data.vertices if v.co.z > -0.01], 1.0, "REPLACE")
     return head
 
 
-def begin() -> bpy.types.Object:
+def begin(name: str = "Kim", x: float = 0.0, look: str = LOOK) -> bpy.types.Object:
     """A head with a groom."""
-    head = make_head()
-    of("grooming").begin(head, LOOK, "Kim")
+    head = make_head(name, x)
+    of("grooming").begin(head, look, name)
     wait(settled)
     return head
 
@@ -98,6 +104,211 @@ def points(thing: bpy.types.Object) -> np.ndarray:
 def size(head: bpy.types.Object) -> float:
     """How far the guides reach from the middle of the head [m]."""
     return float(np.linalg.norm(points(head.ringlet.guide_curves), axis=1).max())
+
+
+def off_skin(thing: bpy.types.Object, head: bpy.types.Object) -> float:
+    """The largest distance of a root of curves, which are shown, from the head in the current frame [m]."""
+    assert not thing.hide_viewport, thing.name
+    seen = head.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    mesh = seen.to_mesh()
+    places = [seen.matrix_world @ vertex.co for vertex in mesh.vertices]
+    tree = BVHTree.FromPolygons(places, [list(face.vertices) for face in mesh.polygons])
+    seen.to_mesh_clear()
+    counts = of("curves").counts_of(thing.evaluated_get(bpy.context.evaluated_depsgraph_get()).data)
+    rows = np.concatenate([[0], np.cumsum(counts)[:-1]])
+    return max(tree.find_nearest(Vector(place))[3] for place in points(thing)[rows])
+
+
+def duplicate(head: bpy.types.Object, *, everything: bool = False, linked: bool = False) -> bpy.types.Object:
+    """A copy of a head, 1 m aside, as Shift D and Alt D make it."""
+    bpy.ops.object.select_all(action="SELECT" if everything else "DESELECT")
+    head.select_set(True)
+    bpy.context.view_layer.objects.active = head
+    bpy.ops.object.duplicate(linked=linked)
+    made = bpy.context.active_object
+    made.animation_data_clear()
+    made.location.x = head.location.x + 1.0
+    bpy.context.view_layer.update()
+    return made
+
+
+def heads(folder: Path) -> dict:
+    """Heads of similar names, one that is renamed, and copies of it."""
+    bpy.ops.wm.save_as_mainfile(filepath=str(folder / "scene.blend"))
+    first, second = begin("Bo.1", 0.0, FEW), begin("Bo_1", 1.0, FEW.replace("length = 5", "length = 9"))
+    first.ringlet.recipe_guides.length__value = 0.06
+    wait(settled)
+    found: dict = {"alike": [off_skin(one.ringlet.hair_curves, one) for one in (first, second)]}
+    found["lengths"] = [one.ringlet.recipe_guides.length__value for one in (first, second)]
+    before = of("grooming").folder_of(first)
+    first.name = "Kimberly"
+    first.ringlet.recipe_guides.length__value = 0.07
+    wait(settled)
+    found["renamed"] = [of("grooming").state_of(first).message, of("grooming").folder_of(first) == before]
+    found["materials"] = sorted(one.name for one in bpy.data.materials)
+    bpy.ops.ed.undo_push(message="before copies")
+    found["copies"] = []
+    for everything, linked in ((False, False), (True, False), (True, True)):
+        first = bpy.data.objects["Kimberly"]
+        copy = duplicate(first, everything=everything, linked=linked)
+        bpy.ops.ed.undo_push(message="copied")
+        of("timer").tick()
+        id = copy.ringlet.id
+        copy.ringlet.recipe_guides.length__value = 0.03
+        bpy.ops.ed.undo_push(message="slider")
+        wait(settled)
+        own, other = copy.ringlet, first.ringlet
+        found["copies"].append(
+            {
+                "off": [off_skin(one.ringlet.hair_curves, one) for one in (first, copy)],
+                "lengths": [one.recipe_guides.length__value for one in (other, own)],
+                "shared": [
+                    name
+                    for name in ("id", "recipe", "guide_curves", "lock_curves", "hair_curves")
+                    if getattr(own, name) == getattr(other, name)
+                ],
+                "data": own.hair_curves.data == other.hair_curves.data,
+                "material": own.hair_curves.data.materials[0] == other.hair_curves.data.materials[0],
+                "message": of("grooming").state_of(copy).message,
+                "folder": sorted(one.name for one in of("grooming").folder_of(copy).iterdir()),
+            }
+        )
+        name = copy.name
+        bpy.ops.ed.undo()
+        of("timer").tick()
+        found["copies"][-1]["undone"] = bpy.data.objects[name].ringlet.id == id
+        bpy.ops.ed.undo()
+        of("timer").tick()
+    found["texts"] = sorted(text.name for text in bpy.data.texts)
+    return found
+
+
+def shot_of_three(head: bpy.types.Object) -> None:
+    """Simulates a head that slides by 3 cm in three frames."""
+    scene = bpy.context.scene
+    scene.frame_start, scene.frame_end = 1, 3
+    for frame, x in ((1, 0.0), (3, 0.03)):
+        head.location.x = x
+        head.keyframe_insert("location", frame=frame)
+    scene.frame_set(1)
+    of("shots").begin_text(head)
+    head.ringlet.shot.ringlet_changes = json.dumps([{"set": ["preroll"], "value": 0}])
+    bpy.context.view_layer.objects.active = head
+    bpy.ops.ringlet.simulate()
+    wait(lambda: of("shots").shots.run is None)
+    assert not of("shots").shots.message, of("shots").shots.message
+
+
+def opened(path: Path) -> bpy.types.Object:
+    """A .blend that is opened, and the extension has looked at it; its head."""
+    bpy.ops.wm.open_mainfile(filepath=str(path))
+    of("timer").tick()
+    wait(settled)
+    return next(of("identity").heads())
+
+
+def off_through(thing: bpy.types.Object, head: bpy.types.Object) -> float:
+    """The largest distance of a root from the head in three frames [m]."""
+    found = []
+    for frame in (1, 2, 3):
+        bpy.context.scene.frame_set(frame)
+        found.append(off_skin(thing, head))
+    return max(found)
+
+
+def moved(folder: Path) -> dict:
+    """A simulated project: opened again and changed, moved, without its frames, saved as another, and renamed."""
+    path = folder / "one/scene.blend"
+    path.parent.mkdir()
+    head = begin("Kim", 0.0, FEW)
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    shot_of_three(head)
+    bpy.ops.wm.save_mainfile()
+    head = opened(path)
+    bpy.context.view_layer.objects.active = head
+    head.ringlet.recipe_guides.length__value = 0.06  # the cache is of the head, which has not changed
+    wait(settled)
+    bpy.ops.ringlet.bake()
+    wait(lambda: of("shots").shots.run is None)
+    found: dict = {"baked": of("shots").shots.message}
+    bpy.ops.wm.save_mainfile()
+    found["paths"] = [file.filepath for file in bpy.data.cache_files]
+    path.parent.rename(folder / "two")
+    head = opened(folder / "two/scene.blend")
+    found["moved"] = off_through(head.ringlet.hair_motion, head)
+    (folder / "two/scene.ringlet").rename(folder / "away")
+    head = opened(folder / "two/scene.blend")
+    state = of("grooming").state_of(head)
+    found |= {"missing": state.missing, "still": off_through(head.ringlet.hair_curves, head)}
+    (folder / "away").rename(folder / "two/scene.ringlet")
+    of("timer").tick()
+    found["back"] = [state.missing, off_through(head.ringlet.hair_motion, head)]
+    (folder / "other").mkdir()
+    bpy.ops.wm.save_as_mainfile(filepath=str(folder / "other/version 2.blend"))
+    found["saved as"] = (of("grooming").folder_of(head) / "cache.usdc").is_file()
+    (folder / "other/version 2.blend").rename(folder / "other/final.blend")
+    head = opened(folder / "other/final.blend")
+    found["renamed"] = (of("grooming").folder_of(head) / "cache.usdc").is_file()
+    found["folders"] = sorted(one.name for one in (folder / "other").iterdir())
+    return found
+
+
+def linked(folder: Path) -> dict:
+    """A head that is linked from another .blend, and its override, simulated and opened again."""
+    library, path = folder / "kim.blend", folder / "scene.blend"
+    begin("Kim", 0.0, FEW)
+    bpy.ops.wm.save_as_mainfile(filepath=str(library))
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.preferences.addon_enable(module=MODULE)
+    with bpy.data.libraries.load(str(library), link=True) as (source, target):
+        target.objects = list(source.objects)
+    for thing in target.objects:
+        bpy.context.scene.collection.objects.link(thing)
+    head = next(thing for thing in target.objects if thing.type == "MESH")
+    bpy.context.view_layer.objects.active = head
+    for _ in range(5):
+        of("timer").tick()
+    found: dict = {"heads": len(list(of("identity").heads())), "refused": refused(bpy.ops.ringlet.simulate)}
+    head = head.override_create(remap_local_usages=True)
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    wait(settled)
+    head.ringlet.recipe_guides.length__value = 0.06
+    shot_of_three(head)
+    found["motion"] = off_through(head.ringlet.lock_motion, head)
+    bpy.ops.wm.save_mainfile()
+    head = opened(path)
+    found |= {"opened": off_through(head.ringlet.lock_motion, head), "text": head.ringlet.recipe.library is None}
+    found |= {"length": head.ringlet.recipe_guides.length__value}
+    found["curves"] = sorted(thing.name_full for thing in bpy.context.scene.objects if thing.type == "CURVES")
+    found["folder"] = of("grooming").folder_of(head).parent.name
+    return found
+
+
+def earlier(folder: Path) -> dict:
+    """A .blend of an extension without ids, whose folder had the name of the head and whose paths were absolute."""
+    path = folder / "scene.blend"
+    head, twin = begin("Kim", 0.0, FEW), begin("Bo.1", 1.0, FEW)
+    other = begin("Bo_1", 2.0, FEW)
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    shot_of_three(head)
+    bpy.app.handlers.save_pre.remove(of("identity")._before_save)
+    of("grooming").folder_of(head).rename(folder / "scene.ringlet/Kim")
+    for file in bpy.data.cache_files:
+        file.filepath = str(folder / "scene.ringlet/Kim" / Path(file.filepath).name)
+    for one in (head, twin, other):
+        one.ringlet.id = one.ringlet.recipe.ringlet_head = ""
+        of("properties").Document(one, "recipe").change(set=["scalp", "mesh"], value=f"/scene/{one.name}")
+    bpy.ops.wm.save_mainfile()
+    found: dict = {"ids": []}
+    for _ in range(2):  # it is not saved in between
+        opened(path)
+        head = bpy.data.objects["Kim"]
+        found["ids"].append([bpy.data.objects[name].ringlet.id for name in ("Kim", "Bo.1", "Bo_1")])
+        found["motion"] = off_through(head.ringlet.lock_motion, head)
+    found["paths"] = [file.filepath for file in bpy.data.cache_files]
+    found["note"] = of("identity").notes.get(bpy.data.objects["Bo.1"].ringlet.id)
+    found["folders"] = sorted(one.name for one in (folder / "scene.ringlet").iterdir())
+    return found
 
 
 def slider(_folder: Path) -> dict:
@@ -370,7 +581,7 @@ def guides(folder: Path) -> dict:
     tips[:, 1:] = tips[:, :1] + 1.5 * (tips[:, 1:] - tips[:, :1])
     drawn.data.attributes["position"].data.foreach_set("vector", tips.ravel())
     drawn.data.update_tag()
-    of("grooming").forget(drawn.name)
+    of("grooming").forget(drawn)
     wait(settled)
     found |= {"sculpted": size(head), "text": own.recipe.as_string(), "message": of("grooming").state_of(head).message}
     own.guides = None
@@ -409,7 +620,7 @@ def main(extension: str, action: str, folder: str) -> dict:
     """Installs the extension and performs an action."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bpy.ops.extensions.package_install_files(filepath=extension, repo="user_default", enable_on_install=True)
-    actions = (slider, stored, shot, cloth, images, killed, install, guides)
+    actions = (slider, stored, shot, cloth, images, killed, install, guides, heads, moved, linked, earlier)
     return {act.__name__: act for act in actions}[action](Path(folder))
 
 

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import importlib
 import sys
+import types
 import zipfile
 from pathlib import Path
 
 import blender
 import numpy as np
 import pytest
+from ringlet.data.names import file_name, folded
 from ringlet.data.pigment import absorption
+from similar_names import SIMILAR
 from wheels import NEEDED, wheel_of_needed, wheel_of_ringlet
 
 import ringlet
@@ -29,6 +33,17 @@ def schema(extension):
     with zipfile.ZipFile(extension) as file:
         file.extractall(extension.parent / "ringlet_groom")
     return blender.load(extension.parent / "ringlet_groom/schema.py")
+
+
+@pytest.fixture(scope="module")
+def folders(extension):
+    """The module ``folders`` of the built extension."""
+    with zipfile.ZipFile(extension) as file:
+        file.extractall(extension.parent / "ringlet_groom")
+    package = types.ModuleType("ringlet_groom")  # without its own module, which needs Blender
+    package.__path__ = [str(extension.parent / "ringlet_groom")]
+    sys.modules["ringlet_groom"] = package
+    return importlib.import_module("ringlet_groom.folders")
 
 
 @pytest.fixture
@@ -98,6 +113,61 @@ def test_the_pigments_of_cycles_absorb_as_those_of_ringlet():
     np.testing.assert_allclose(cycles, absorption(melanin, redness), rtol=5e-3)
 
 
+def test_each_text_keeps_its_stem_and_the_number_that_blender_adds():
+    names = ["Kim.recipe.toml", "Kim.recipe.toml.001", "Kim.shot.toml", "Kim.toml", "Kim"]
+    assert [edited_text.stem_of(name) for name in names] == ["Kim", "Kim.001", "Kim", "Kim", "Kim"]
+
+
+@pytest.mark.parametrize("one, other", SIMILAR)
+def test_heads_of_similar_names_have_folders_of_their_own(folders, one, other):
+    ids = [folders.new_id(one), folders.new_id(other), folders.earlier_id(one), folders.earlier_id(other)]
+    assert len({folded(id) for id in ids}) == 4
+    assert all(id.isascii() and len(id) < 64 and file_name(id) == id for id in ids)
+    assert folders.earlier_id(one) == ids[2]
+
+
+def test_a_copy_of_a_head_is_distinguished_from_the_head(folders):
+    def wrong(*claims, known=None, elsewhere=()):
+        return folders.wrong_ids([folders.Claim(*one) for one in claims], known or {}, elsewhere)
+
+    assert wrong((7, "a", False), (9, "b", False)) == []
+    assert wrong((9, "a", False), (7, "a", False)) == [0]  # the later one
+    assert wrong((9, "a", True), (7, "a", False)) == [1]  # as read from a file: the curves are below the first
+    assert wrong((9, "a", False), (7, "a", True), known={9: "a"}) == [1]  # in this session the first had it
+    assert wrong((7, "a", True), (9, "a", False), known={7: "a", 9: "b"}) == [1]  # undo took back its own
+    assert wrong((7, "a", True), elsewhere={"a"}) == [0]  # an override of a head of a library
+    assert wrong((7, "", False), (9, "", False)) == []
+
+
+def test_the_folder_of_a_head_is_found_once_under_its_earlier_name_and_next_to_another_blend(folders, tmp_path):
+    def project(stem, name, blend=True):
+        (tmp_path / f"{stem}.ringlet" / name).mkdir(parents=True)
+        (tmp_path / f"{stem}.ringlet" / name / "cache.usdc").write_text(stem)
+        if blend:
+            (tmp_path / f"{stem}.blend").touch()
+
+    project("old", "Kim")
+    place = tmp_path / "old.ringlet/Kim-1"
+    for _ in range(2):
+        folders.find(place, "Kim")
+        assert (place / "cache.usdc").read_text() == "old" and not (place.parent / "Kim").exists()
+    (place / "cache.usdc.part").mkdir()
+    copied = tmp_path / "version.ringlet/Kim-1"
+    folders.find(copied)  # the .blend is there still
+    assert [file.name for file in copied.iterdir()] == ["cache.usdc"] and (place / "cache.usdc").exists()
+    (tmp_path / "old.blend").unlink()
+    renamed = tmp_path / "new.ringlet/Kim-1"
+    (tmp_path / "version.blend").touch()
+    folders.find(renamed)  # the .blend of the folder "old" is gone
+    assert (renamed / "cache.usdc").read_text() == "old" and not place.parent.exists()
+    folders.find(tmp_path / "new.ringlet/Bo-2", "Bo")
+    assert not (tmp_path / "new.ringlet/Bo-2").exists()
+    copy = tmp_path / "new.ringlet/Kim-3"
+    (renamed / "notes").write_text("kept")
+    folders.copy(renamed, copy, folders.SIMULATED)
+    assert [file.name for file in copy.iterdir()] == ["notes"]
+
+
 @needs_blender
 def test_a_groom_from_scratch_follows_a_slider_undo_and_redo(act):
     found = act("slider")
@@ -162,6 +232,46 @@ def test_locks_grow_where_an_image_is_painted(act):
     assert thick + thin == 400 and 2.5 < thick / thin < 6
     assert found["message"] == "" and found["dirty"] and found["file"] == ""
     assert "Nowhere: has no pixels" in found["refused"] and found["mended"]
+
+
+@needs_blender
+def test_heads_of_similar_names_and_copies_of_heads_are_grooms_of_their_own(act):
+    found = act("heads")
+    assert max(found["alike"]) < 1e-4 and found["lengths"] == pytest.approx([0.06, 0.09])
+    assert found["renamed"] == ["", True] and found["materials"] == ["Bo.1 hair", "Bo_1 hair"]
+    for copy in found["copies"]:
+        assert max(copy["off"]) < 1e-4 and copy["lengths"] == pytest.approx([0.07, 0.03])
+        assert copy["shared"] == [] and not copy["data"] and not copy["material"] and copy["message"] == ""
+        assert "head.usdc" in copy["folder"]
+        assert copy["undone"]  # undo leaves a copy its id
+    assert found["texts"] == ["Bo.1.recipe.toml", "Bo_1.recipe.toml"]
+
+
+@needs_blender
+def test_a_simulated_head_plays_where_its_project_moves_and_says_what_is_missing(act):
+    found = act("moved")
+    assert found["baked"] == "" and all(path.startswith("//scene.ringlet/Kim-") for path in found["paths"])
+    assert found["moved"] < 1e-4 and found["still"] < 1e-4
+    assert "is missing; put it back" in found["missing"] and found["back"] == ["", pytest.approx(0.0, abs=1e-4)]
+    assert found["saved as"] and found["renamed"]
+    assert found["folders"] == ["final.blend", "final.ringlet"]
+
+
+@needs_blender
+def test_a_linked_head_is_left_alone_and_its_override_has_hair_of_its_own(act):
+    found = act("linked")
+    assert found["heads"] == 0 and "kim.blend; change its hair there, or make a library override" in found["refused"]
+    assert max(found["motion"], found["opened"]) < 1e-4 and found["length"] == pytest.approx(0.06)
+    assert found["text"] and found["folder"] == "scene.ringlet"
+    assert found["curves"] == ["Kim guides", "Kim hairs", "Kim locks", "Kim locks simulated"]
+
+
+@needs_blender
+def test_heads_of_an_extension_without_ids_keep_their_frames(act):
+    found = act("earlier")
+    assert found["ids"][0] == found["ids"][1] and len(set(found["ids"][0])) == 3
+    assert found["motion"] < 1e-4 and found["paths"] == [f"//scene.ringlet/{found['ids'][0][0]}/cache.usdc"]
+    assert "Shared the folder Bo_1 with Bo_1" in found["note"] and "Kim" not in found["folders"]
 
 
 @needs_blender

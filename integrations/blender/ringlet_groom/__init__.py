@@ -5,9 +5,9 @@ Ringlet itself runs as a process of its own (``session``); this is the host at t
 
 from __future__ import annotations
 
-from . import file_operators, operators, panels, preferences, properties, timer
+from . import file_operators, identity, operators, panels, preferences, properties, timer
 
-MODULES = (preferences, properties, operators, file_operators, panels, timer)
+MODULES = (preferences, properties, identity, operators, file_operators, panels, timer)
 
 
 def register() -> None:

@@ -7,12 +7,19 @@ the text that has the changes in it, with all comments.
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Sequence
 from typing import Any
 
 UNITS = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "in": 0.0254}
 Place = tuple[str | int, ...]
 MISSING = object()
+
+
+def stem_of(name: str) -> str:
+    """The name of a recipe or a shot without its extension; the number that Blender adds to one that is taken stays."""
+    found = re.fullmatch(r"(.*?)(?:\.recipe|\.shot)?\.toml(\.\d+)?", name, re.DOTALL)
+    return f"{found[1]}{found[2] or ''}" if found else name
 
 
 def with_change(changes: str, change: dict[str, Any]) -> str:

@@ -7,24 +7,24 @@ editor, sculpting, undo and reload all come out right by that.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from hashlib import blake2b
-from pathlib import Path
 
 import bpy
 import numpy as np
 from mathutils import Matrix
 
-from . import curves, images, material, meshes
+from . import curves, folders, images, material, meshes, names
+from .edited_text import stem_of
+from .identity import STILL, folder_of, head_with, new_text
 from .link import Message
 from .properties import Document, keep_settings, scale
 from .refused import Refused
 from .session import Request, session
 
 HEAD, GUIDES = "head.usdc", "guides.usdc"
+PRIM = "head"  # of the head in its file, whatever it is called here
 MADE_OF = "ringlet_made_of"  # custom property of curves: a digest of what they were made of
-SHOWN = {"guides": "guide_curves", "locks": "lock_curves", "hairs": "hair_curves"}
 
 
 @dataclass
@@ -35,6 +35,7 @@ class State:
     busy:      whether its answer is outstanding
     sent:      what Ringlet has: fingerprints of files by name, for an epoch of the session and a folder
     message:   the error of the last request; empty when it went well
+    missing:   a line of the simulated frames that are not there
     conflicts: what Ringlet says of the groom
     progress:  stage in progress, and its fraction
     """
@@ -44,42 +45,34 @@ class State:
     sent: dict[str, str] = field(default_factory=dict)
     of: tuple[int, str] = (0, "")
     message: str = ""
+    missing: str = ""
     conflicts: list[str] = field(default_factory=list)
     counts: dict[str, int] = field(default_factory=dict)
     progress: tuple[str, float] = ("", 1.0)
 
 
-states: dict[str, State] = {}
-_arrays: dict[str, tuple[dict[str, np.ndarray], str]] = {}  # of meshes and guides, with fingerprints, until they change
+states: dict[str, State] = {}  # of heads by id
+# Of meshes and guides by the number of the object, with fingerprints, until they change.
+_arrays: dict[int, tuple[dict[str, np.ndarray], str]] = {}
 
 
 def state_of(head: bpy.types.Object) -> State:
     """The state of a head."""
-    return states.setdefault(head.name_full, State())
+    return _state(head.ringlet.id)
 
 
-def forget(name: str | None = None) -> None:
+def _state(id: str) -> State:
+    return states.setdefault(id, State())
+
+
+def forget(thing: bpy.types.Object | None = None) -> None:
     """Forgets the arrays of an object that has changed, or of all and the states too."""
-    if name is None:
+    if thing is None:
         states.clear()
         _arrays.clear()
         images.forget()
     else:
-        _arrays.pop(name, None)
-
-
-def heads() -> Iterator[bpy.types.Object]:
-    """Objects with a recipe."""
-    return (thing for thing in bpy.data.objects if thing.type == "MESH" and thing.ringlet.recipe is not None)
-
-
-def folder_of(head: bpy.types.Object) -> Path:
-    """The folder of a head's files: next to the .blend, or a temporary one before that is saved."""
-    name = meshes.identifier(head.name)
-    if bpy.data.filepath:
-        blend = Path(bpy.data.filepath)
-        return blend.with_name(f"{blend.stem}.ringlet") / name
-    return Path(bpy.app.tempdir) / "ringlet" / name
+        _arrays.pop(thing.session_uid, None)
 
 
 def rest_matrix(head: bpy.types.Object) -> Matrix:
@@ -90,30 +83,36 @@ def rest_matrix(head: bpy.types.Object) -> Matrix:
 
 def begin(head: bpy.types.Object, text: str, name: str) -> None:
     """Gives a head a recipe, in a new text of the .blend."""
-    head.ringlet.recipe = bpy.data.texts.new(f"{name}.recipe.toml")
-    head.ringlet.recipe.from_string(text)
-    if not any(head.ringlet.rest_matrix):
-        head.ringlet.rest_matrix = [value for row in head.matrix_world for value in row]
-    document = Document(head, "recipe")
-    document.change(set=["scalp", "file"], value=HEAD)
-    document.change(set=["scalp", "mesh"], value=f"/scene/{meshes.identifier(head.name)}")
-    regions = [meshes.identifier(group.name) for group in head.vertex_groups]
-    document.change(set=["scalp", "region"], value="scalp" if "scalp" in regions else None)
+    own = head.ringlet
+    own.id = own.id or folders.new_id(head.name)
+    own.recipe = new_text(name, "recipe", head, text)
+    if not any(own.rest_matrix):
+        own.rest_matrix = [value for row in head.matrix_world for value in row]
+    regions, _ = meshes.map_names(head)
+    Document(head, "recipe").change(set=["scalp", "region"], value="scalp" if "scalp" in regions else None)
 
 
-def recipe_message(head: bpy.types.Object) -> dict:
-    """The recipe of a head, with what the panel adds to it, as Ringlet takes it."""
-    document, own = Document(head, "recipe"), head.ringlet
-    overlay = []
+def recipe_message(head: bpy.types.Object, text: bpy.types.Text | None = None, file: str = HEAD) -> dict:
+    """The recipe of a head, or another text of it, with its mesh and what the panel adds, as Ringlet takes it.
+
+    file: with the mesh of the head
+    """
+    own, folder = head.ringlet, folder_of(head)
+    text = text or own.recipe
+    overlay = [{"set": ["scalp", "file"], "value": file}, {"set": ["scalp", "mesh"], "value": f"/scene/{PRIM}"}]
     if own.guides is not None:
         overlay.append({"set": ["guides"], "value": {"file": GUIDES}})
-    folder = folder_of(head)
-    for one in own.images:
-        if one.image is not None:
-            file = images.file_of(one.image, folder)
-            overlay.append({"set": ["maps", meshes.identifier(one.image.name)], "value": file})
-    changes = json.loads(document.changes or "[]")
-    return {"name": own.recipe.name, "text": document.text, "changes": changes, "overlay": overlay}
+    shown = [one.image for one in own.images if one.image is not None]
+    maps = meshes.map_names(head)[1]
+    for image, name, stem in zip(shown, maps, names.distinct(maps, compared=names.folded), strict=True):
+        overlay.append({"set": ["maps", name], "value": images.file_of(image, folder, stem)})
+    changes = json.loads(text.ringlet_changes or "[]")
+    return {"name": recipe_file(text), "text": text.as_string(), "changes": changes, "overlay": overlay}
+
+
+def recipe_file(text: bpy.types.Text) -> str:
+    """Name of the file of a recipe in the folder of its head."""
+    return f"{names.file_name(stem_of(text.name))}.recipe.toml"
 
 
 def key_of(head: bpy.types.Object, inputs: str = "") -> str:
@@ -139,21 +138,21 @@ def _digest(parts: list[str]) -> str:
 
 def head_arrays(head: bpy.types.Object) -> tuple[dict[str, np.ndarray], str]:
     """The rest pose of a head, and its fingerprint."""
-    return _kept(head.name_full, lambda: meshes.rest_arrays(head, rest_matrix(head)))
+    return _kept(head.session_uid, lambda: meshes.rest_arrays(head, rest_matrix(head)))
 
 
 def guide_arrays(head: bpy.types.Object) -> tuple[dict[str, np.ndarray], str]:
     """The guides of a head in the space of its rest pose, and their fingerprint."""
     guides = head.ringlet.guides
     matrix = rest_matrix(head) @ head.matrix_world.inverted() @ guides.matrix_world
-    return _kept(guides.name_full, lambda: curves.read_curves(guides, matrix))
+    return _kept(guides.session_uid, lambda: curves.read_curves(guides, matrix))
 
 
-def _kept(name: str, make) -> tuple[dict[str, np.ndarray], str]:
-    if name not in _arrays:
+def _kept(number: int, make) -> tuple[dict[str, np.ndarray], str]:
+    if number not in _arrays:
         made = make()
-        _arrays[name] = made, meshes.fingerprint(made)
-    return _arrays[name]
+        _arrays[number] = made, meshes.fingerprint(made)
+    return _arrays[number]
 
 
 def watch(head: bpy.types.Object) -> None:
@@ -185,21 +184,21 @@ def is_made(head: bpy.types.Object, key: str) -> bool:
 
 def shown_curves(head: bpy.types.Object) -> list[bpy.types.Object]:
     """The Curves objects of the groom of a head."""
-    return [thing for name in SHOWN.values() if (thing := getattr(head.ringlet, name)) is not None]
+    return [thing for name in STILL.values() if (thing := getattr(head.ringlet, name)) is not None]
 
 
 def ask(head: bpy.types.Object) -> None:
     """Asks for the groom of a head."""
-    own, state, name = head.ringlet, state_of(head), head.name_full
+    own, state = head.ringlet, state_of(head)
     sent, inputs = (Document(head, "recipe").text, Document(head, "recipe").changes), inputs_of(head)
-    recipe = recipe_message(head)
+    recipe, id = recipe_message(head), own.id
     send_files(head)
     state.busy = True
     request = Request(
-        done=lambda message: _take(name, sent, inputs, message),
-        failed=lambda line: _fail(name, line),
-        lost=lambda line: _lose(name, line),
-        progress=lambda stage, done, total: _progress(name, stage, done, total),
+        done=lambda message: _take(id, sent, inputs, message),
+        failed=lambda line: _fail(id, line),
+        lost=lambda line: _lose(id, line),
+        progress=lambda stage, done, total: _progress(id, stage, done, total),
     )
     fraction = own.fraction if own.show_hairs else None
     session.send("groom", request, folder=str(folder_of(head)), recipe=recipe, hairs=fraction)
@@ -207,14 +206,14 @@ def ask(head: bpy.types.Object) -> None:
 
 def send_files(head: bpy.types.Object) -> None:
     """Sends the head and its guides where Ringlet has not got them as they are now."""
-    state, name, folder = state_of(head), head.name_full, folder_of(head)
+    state, id, folder = state_of(head), head.ringlet.id, folder_of(head)
     if state.of != (session.epoch, str(folder)):
         state.sent, state.of = {}, (session.epoch, str(folder))
     arrays, digest = head_arrays(head)
     digest += f" {meshes.is_subdivided(head)}"
-    request = Request(lambda _: None, lambda line: _fail(name, line), lambda line: _lose(name, line))
+    request = Request(lambda _: None, lambda line: _fail(id, line), lambda line: _lose(id, line))
     if state.sent.get(HEAD) != digest:
-        described, sent = meshes.message([(head, arrays)])
+        described, sent = meshes.message([(PRIM, head, arrays)])
         space = {"up_axis": "Z", "meters_per_unit": scale()}
         session.send("write_meshes", request, sent, folder=str(folder), file=HEAD, meshes=described, **space)
         state.sent[HEAD] = digest
@@ -227,35 +226,33 @@ def send_files(head: bpy.types.Object) -> None:
             state.sent[GUIDES] = digest
 
 
-def _progress(name: str, stage: str, done: int, total: int) -> None:
-    if (head := bpy.data.objects.get(name)) is not None:
-        state_of(head).progress = stage, done / max(total, 1)
+def _progress(id: str, stage: str, done: int, total: int) -> None:
+    _state(id).progress = stage, done / max(total, 1)
 
 
-def _fail(name: str, line: str) -> None:
-    if (head := bpy.data.objects.get(name)) is not None:
-        state = state_of(head)
-        state.busy, state.message, state.sent = False, line, {}
-        state.progress = "", 1.0
+def _fail(id: str, line: str) -> None:
+    state = _state(id)
+    state.busy, state.message, state.sent = False, line, {}
+    state.progress = "", 1.0
 
 
-def _lose(name: str, line: str) -> None:
+def _lose(id: str, line: str) -> None:
     """Ringlet ended before it answered: it is asked again."""
-    _fail(name, line)
-    if (head := bpy.data.objects.get(name)) is not None:
-        state_of(head).asked = ""
+    _fail(id, line)
+    _state(id).asked = ""
 
 
-def _take(name: str, sent: tuple[str, str], inputs: str, message: Message) -> None:
+def _take(id: str, sent: tuple[str, str], inputs: str, message: Message) -> None:
     """Shows a groom, and takes the text that has the changes in it if it has not changed meanwhile.
 
+    id:           of the head, which may have been renamed or removed
     sent, inputs: text and changes, and the digest of all else, that the groom was made of
     """
-    head = bpy.data.objects.get(name)
-    if head is None or head.ringlet.recipe is None:
-        return
-    state, document, header = state_of(head), Document(head, "recipe"), message.header
+    state, head, header = _state(id), head_with(id), message.header
     state.busy, state.message, state.progress = False, "", ("", 1.0)
+    if head is None:
+        return
+    document = Document(head, "recipe")
     state.conflicts, state.counts = header["conflicts"], header["counts"]
     keep_settings("recipe", header["text"], header["settings"])
     current = (document.text, document.changes) == sent
@@ -274,14 +271,16 @@ def show(head: bpy.types.Object, message: Message) -> None:
     arrays, hairs = message.arrays, any(name.startswith("hairs/") for name in message.arrays)
     color, fiber = message.header["settings"].get("color"), message.header["fiber"]
     dyed = color is not None and (color.get("dye") is not None or bool(color["dyes"]))
-    made = material.hair_material(
-        f"{head.name} hair",
+    slots = [one for thing in shown_curves(head) for one in thing.data.materials if one is not None]
+    made = next((one for one in slots if material.is_ours(one)), None) or bpy.data.materials.new(f"{head.name} hair")
+    material.hair_material(
+        made,
         fiber,
         material.viewport_color(_own(arrays, "hairs" if hairs else "locks"), fiber, dyed=dyed),
         pigments=any(name.endswith("/melanin") for name in arrays),
         dyed=dyed,
     )
-    for name, pointer in SHOWN.items():
+    for name, pointer in STILL.items():
         own = _own(arrays, name)
         thing = getattr(head.ringlet, pointer)
         if not own:

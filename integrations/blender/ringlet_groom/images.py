@@ -10,7 +10,6 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from .meshes import identifier
 from .refused import Refused
 
 REST = 10.0  # the pixels of an image are read again after so many times as long as it took
@@ -24,17 +23,17 @@ class _Painted:
     until: float
 
 
-_painted: dict[str, _Painted] = {}
+_painted: dict[int, _Painted] = {}
 
 
-def file_of(image: bpy.types.Image, folder: Path) -> str:
-    """The file of an image. What is painted, generated or packed is written to the folder, and the name counts there.
+def file_of(image: bpy.types.Image, folder: Path, name: str) -> str:
+    """The file of an image. What is painted, generated or packed is written to the folder, under a name of its own.
 
     Raises Refused for an image without pixels, or with tiles.
     """
     if (path := _on_disk(image)) is not None:
         return str(path)
-    place = folder / f"{identifier(image.name)}.png"
+    place = folder / f"{name}.png"
     place.parent.mkdir(parents=True, exist_ok=True)
     own = image.file_format
     try:
@@ -51,13 +50,13 @@ def stamp(image: bpy.types.Image) -> str:
     """Changes when an image changes: its file on the disk, or what is painted. Raises Refused as ``file_of`` does."""
     if (path := _on_disk(image)) is not None:
         return f"{path} {path.stat().st_mtime_ns}"
-    found, now = _painted.get(image.name_full), time.monotonic()
+    found, now = _painted.get(image.session_uid), time.monotonic()
     if found is None or now >= found.until:
         pixels = np.empty(len(image.pixels), np.float32)
         image.pixels.foreach_get(pixels)
         digest = blake2b(pixels.data, digest_size=16).hexdigest()
         end = time.monotonic()
-        found = _painted[image.name_full] = _Painted(digest, end + REST * (end - now))
+        found = _painted[image.session_uid] = _Painted(digest, end + REST * (end - now))
     return found.digest
 
 

@@ -58,16 +58,20 @@ def viewport_color(arrays: Mapping[str, np.ndarray], fiber: Mapping[str, float],
     return np.exp(-falloff * np.sqrt(absorption))
 
 
+def is_ours(material: bpy.types.Material) -> bool:
+    """Whether a material has Ringlet's hair node."""
+    return material.node_tree is not None and NAME in material.node_tree.nodes
+
+
 def hair_material(
-    name: str, fiber: Mapping[str, float], color: np.ndarray, *, pigments: bool, dyed: bool
-) -> bpy.types.Material:
-    """Makes or updates a material. Users may change it; Ringlet changes its hair node and its color in the viewport.
+    material: bpy.types.Material, fiber: Mapping[str, float], color: np.ndarray, *, pigments: bool, dyed: bool
+) -> None:
+    """Updates a material. Users may change it; Ringlet changes its hair node and its color in the viewport.
 
     color:    in the viewport, linear, shape (3,)
     pigments: whether the hairs have attributes of their pigments; a usual brown otherwise
     dyed:     whether their ``color`` counts instead
     """
-    material = bpy.data.materials.get(name) or bpy.data.materials.new(name)
     if material.node_tree is None:  # before Blender 5
         material.use_nodes = True
     material.diffuse_color = (*color.tolist(), 1.0)
@@ -92,7 +96,6 @@ def hair_material(
         ("color", "Color", dyed),
     ):
         _connect(material, hair, attribute, key, wanted)
-    return material
 
 
 def _new_hair(material: bpy.types.Material) -> bpy.types.Node:

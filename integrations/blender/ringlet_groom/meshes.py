@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from hashlib import blake2b
@@ -12,6 +11,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
+from .names import distinct
 from .refused import Refused
 
 # Modifiers that change the topology. Ringlet wants the points of the mesh itself, moved by the others.
@@ -21,10 +21,11 @@ IN_REGION = 0.5  # mean weight of a face that belongs to the region of a vertex 
 Arrays = dict[str, np.ndarray]
 
 
-def identifier(name: str) -> str:
-    """A name as USD and recipes take it: ``Scalp area`` is ``Scalp_area``."""
-    valid = re.sub(r"\W", "_", name, flags=re.ASCII)
-    return valid if re.match(r"[A-Za-z_]", valid) else f"_{valid}"
+def map_names(head: bpy.types.Object) -> tuple[list[str], list[str]]:
+    """Names of maps, all different: of the vertex groups of a head, and of its images, as it lists both."""
+    groups = [group.name for group in head.vertex_groups]
+    found = distinct([*groups, *(one.image.name for one in head.ringlet.images if one.image)])
+    return found[: len(groups)], found[len(groups) :]
 
 
 def rest_arrays(thing: bpy.types.Object, matrix: Matrix) -> Arrays:
@@ -98,10 +99,10 @@ def posed_points(thing: bpy.types.Object) -> np.ndarray:
     return _transformed(_positions(seen.data), seen.matrix_world)
 
 
-def message(things: list[tuple[bpy.types.Object, Arrays]]) -> tuple[list[dict[str, Any]], Arrays]:
-    """Descriptions and arrays of meshes for the request ``write_meshes``."""
-    described = [{"name": identifier(thing.name), "subdivided": is_subdivided(thing)} for thing, _ in things]
-    arrays = {f"{k}/{name}": values for k, (_, own) in enumerate(things) for name, values in own.items()}
+def message(things: list[tuple[str, bpy.types.Object, Arrays]]) -> tuple[list[dict[str, Any]], Arrays]:
+    """Descriptions and arrays of meshes, each with its name in the file, for the request ``write_meshes``."""
+    described = [{"name": name, "subdivided": is_subdivided(thing)} for name, thing, _ in things]
+    arrays = {f"{k}/{name}": values for k, (_, _, own) in enumerate(things) for name, values in own.items()}
     return described, arrays
 
 
@@ -117,7 +118,7 @@ def _transformed(points: np.ndarray, matrix: Matrix) -> np.ndarray:
 
 
 def _vertex_groups(thing: bpy.types.Object) -> Arrays:
-    names = [identifier(group.name) for group in thing.vertex_groups]
+    names, _ = map_names(thing)
     weights = np.zeros((len(names), len(thing.data.vertices)), np.float32)
     if names:
         for vertex in thing.data.vertices:

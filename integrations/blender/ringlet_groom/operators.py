@@ -10,7 +10,9 @@ from typing import ClassVar
 import bpy
 from bpy.props import EnumProperty, IntProperty, StringProperty
 
-from . import grooming, installation, schema, shots
+from . import grooming, identity, installation, schema, shots
+from .edited_text import stem_of
+from .names import distinct, file_name, folded
 from .properties import Document
 from .refused import Refused
 from .session import Request, clean_environment, session
@@ -32,8 +34,11 @@ class OnHead:
         return (head := head_of(context)) is not None and head.ringlet.recipe is not None
 
     def execute(self, context: bpy.types.Context) -> set[str]:
+        head = head_of(context)
         try:
-            self.act(context, head_of(context))
+            identity.refuse_linked(head)
+            identity.settle()
+            self.act(context, head)
         except Refused as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
@@ -87,7 +92,7 @@ class OpenRecipe(OnHead, bpy.types.Operator):
             text = path.read_text(encoding="utf-8")
         except (OSError, UnicodeDecodeError) as error:
             raise Refused(f"{path}: cannot be read ({error}); choose a recipe") from None
-        grooming.begin(head, text, path.name.removesuffix(".toml").removesuffix(".recipe"))
+        grooming.begin(head, text, stem_of(path.name))
 
 
 class NewVariant(OnHead, bpy.types.Operator):
@@ -98,9 +103,8 @@ class NewVariant(OnHead, bpy.types.Operator):
 
     def act(self, _context: bpy.types.Context, head: bpy.types.Object) -> None:
         own = head.ringlet
-        name = own.recipe.name.removesuffix(".toml").removesuffix(".recipe")
-        variant = bpy.data.texts.new(f"{name} variant.recipe.toml")
-        variant.from_string(own.recipe.as_string())
+        name = f"{stem_of(own.recipe.name)} variant"
+        variant = identity.new_text(name, "recipe", head, own.recipe.as_string())
         variant.ringlet_changes = own.recipe.ringlet_changes
         own.recipe = variant
 
@@ -228,15 +232,13 @@ class Export(OnHead, bpy.types.Operator):
     bl_options: ClassVar = set()
 
     def act(self, _context: bpy.types.Context, head: bpy.types.Object) -> None:
-        recipe = grooming.recipe_message(head)
-        others = [
-            text
-            for text in bpy.data.texts
-            if text.name.endswith(".recipe.toml")
-            and text != head.ringlet.recipe
-            and f'"/scene/{grooming.meshes.identifier(head.name)}"' in text.as_string()
+        recipe, own = grooming.recipe_message(head), head.ringlet
+        others = [text for text in bpy.data.texts if text.ringlet_head == own.id and text != own.recipe]
+        stems = distinct([stem_of(text.name) for text in others], file_name, folded)
+        variants = [
+            {**grooming.recipe_message(head, text), "name": f"{stem}.recipe.toml"}
+            for text, stem in zip(others, stems, strict=True)
         ]
-        variants = [{**recipe, "name": text.name, "text": text.as_string(), "changes": []} for text in others]
         state, folder = grooming.state_of(head), grooming.folder_of(head)
 
         def done(message) -> None:
@@ -258,7 +260,7 @@ class View(OnHead, bpy.types.Operator):
     bl_options: ClassVar = set()
 
     def act(self, _context: bpy.types.Context, head: bpy.types.Object) -> None:
-        command, recipe = installation.command(), grooming.folder_of(head) / head.ringlet.recipe.name
+        command, recipe = installation.command(), grooming.folder_of(head) / grooming.recipe_file(head.ringlet.recipe)
         if command is None:
             raise Refused("Ringlet is not installed; see the extension's preferences")
         if not recipe.is_file():
@@ -273,7 +275,7 @@ class TakeSaved(OnHead, bpy.types.Operator):
     bl_label = "Take from Review"
 
     def act(self, _context: bpy.types.Context, head: bpy.types.Object) -> None:
-        recipe = grooming.folder_of(head) / head.ringlet.recipe.name
+        recipe = grooming.folder_of(head) / grooming.recipe_file(head.ringlet.recipe)
         if not recipe.is_file():
             raise Refused(f"{recipe}: there is no such file; open the review first")
         head.ringlet.recipe.from_string(recipe.read_text(encoding="utf-8"))

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import bpy
 
-from . import grooming, schema
+from . import grooming, identity, schema
 from .operators import head_of
 from .properties import is_set
+from .refused import Refused
 from .session import session
 from .shots import shots
 
@@ -54,6 +55,11 @@ class Main(bpy.types.Panel):
         if head is None:
             layout.label(text="Choose the mesh of a head")
             return
+        try:
+            identity.refuse_linked(head)
+        except Refused as error:
+            lines(layout, str(error), "INFO")
+            return
         own = head.ringlet
         if own.recipe is None:
             layout.operator_menu_enum("ringlet.begin", "look")
@@ -76,7 +82,7 @@ class Main(bpy.types.Panel):
             lines(layout, state.message, "INFO" if state.message.startswith("Wrote") else "ERROR")
         elif state.counts:
             layout.label(text=", ".join(f"{count:,} {name}" for name, count in state.counts.items()))
-        for sentence in state.conflicts[:MOST_LINES]:
+        for sentence in [*filter(None, [identity.notes.get(own.id)]), *state.conflicts[:MOST_LINES]]:
             lines(layout, sentence, "INFO")
         row = layout.row(align=True)
         row.operator("ringlet.view")
@@ -138,8 +144,9 @@ class Shot(bpy.types.Panel):
             row = layout.row(align=True)
             row.operator("ringlet.bake")
             row.operator("ringlet.clear_motion")
-        if shots.message:
-            lines(layout, shots.message, "ERROR")
+        state = grooming.state_of(head_of(context))
+        for sentence in filter(None, [shots.message, state.missing]):
+            lines(layout, sentence, "ERROR")
         for sentence in shots.notes[:MOST_LINES]:
             lines(layout, sentence, "INFO")
 

@@ -27,6 +27,7 @@ from .edited_text import MISSING
 from .schema import Setting
 
 KINDS = ("recipe", "shot")
+CURVES = ("guide_curves", "lock_curves", "hair_curves", "lock_motion", "hair_motion")
 _settings: dict[tuple[str, str], dict[str, Any]] = {}  # all settings of a text, as Ringlet answered
 MOST_KEPT = 64
 
@@ -195,11 +196,10 @@ def _property(kind: str, setting: Setting) -> Any:
 
 def _names(group: bpy.types.PropertyGroup, _context: bpy.types.Context, typed: str) -> list[str]:
     """Names of the maps of a head: its vertex groups and its images."""
-    from .meshes import identifier
+    from .meshes import map_names
 
-    head = group.id_data
-    names = [identifier(one.name) for one in (*head.vertex_groups, *head.ringlet.images)]
-    return [name for name in names if typed.lower() in name.lower()]
+    groups, images = map_names(group.id_data)
+    return [name for name in (*groups, *images) if typed.lower() in name.lower()]
 
 
 def _group(name: str, kind: str, settings: list[Setting]) -> type:
@@ -237,21 +237,24 @@ def _build() -> tuple[list[type], type]:
             classes.append(group)
             sections[f"{kind}_{name}"] = PointerProperty(type=group, description=description)
     scalp = _group("RINGLET_PG_recipe_scalp", "recipe", [REGION])
-    rows: dict[str, Any] = {"op": StringProperty()}
+    operators: dict[str, Any] = {"op": StringProperty()}
     for name, (_, settings) in schema.operators().items():
         group = _group(f"RINGLET_PG_op_{name}", "recipe", settings)
         classes.append(group)
-        rows[name] = PointerProperty(type=group)
-    shape = type("RINGLET_PG_shape", (bpy.types.PropertyGroup,), {"__annotations__": rows})
+        operators[name] = PointerProperty(type=group)
+    shape = type("RINGLET_PG_shape", (bpy.types.PropertyGroup,), {"__annotations__": operators})
+    kept: dict[str, Any] = {"override": {"LIBRARY_OVERRIDABLE"}}  # also of a head that overrides one of a library
+    rows = {"override": {"LIBRARY_OVERRIDABLE", "USE_INSERTION"}}
     head = {
         **sections,
         "recipe_scalp": PointerProperty(type=scalp),
-        "shape": CollectionProperty(type=shape),
-        "images": CollectionProperty(type=ImageMap),
-        "recipe": PointerProperty(type=bpy.types.Text, name="Recipe", description="The recipe of this head"),
-        "shot": PointerProperty(type=bpy.types.Text, name="Shot", description="How the groom is simulated"),
-        "rest_matrix": FloatVectorProperty(size=16, options={"HIDDEN"}),
-        "live": BoolProperty(name="Live", default=True, description="Groom again with every change"),
+        "id": StringProperty(options={"HIDDEN"}, **kept),
+        "shape": CollectionProperty(type=shape, **rows),
+        "images": CollectionProperty(type=ImageMap, **rows),
+        "recipe": PointerProperty(type=bpy.types.Text, name="Recipe", description="The recipe of this head", **kept),
+        "shot": PointerProperty(type=bpy.types.Text, name="Shot", description="How the groom is simulated", **kept),
+        "rest_matrix": FloatVectorProperty(size=16, options={"HIDDEN"}, **kept),
+        "live": BoolProperty(name="Live", default=True, description="Groom again with every change", **kept),
         "fraction": FloatProperty(
             name="Hairs",
             default=0.25,
@@ -259,27 +262,32 @@ def _build() -> tuple[list[type], type]:
             max=1.0,
             subtype="FACTOR",
             description="Fraction of the hairs to make; each is as much wider as others are left out",
+            **kept,
         ),
         "show_hairs": BoolProperty(
-            name="Show hairs", default=True, description="Make hairs, not guides and locks alone"
+            name="Show hairs", default=True, description="Make hairs, not guides and locks alone", **kept
         ),
         "guides": PointerProperty(
             type=bpy.types.Object,
             name="Guides",
             poll=_curves_only,
             description="Curves drawn or sculpted in Blender that give silhouette and length; grown when empty",
+            **kept,
         ),
         "colliders": PointerProperty(
-            type=bpy.types.Collection, name="Colliders", description="Meshes that hair touches besides the head"
+            type=bpy.types.Collection,
+            name="Colliders",
+            description="Meshes that hair touches besides the head",
+            **kept,
         ),
         "cloth": PointerProperty(
             type=bpy.types.Collection,
             name="Cloth",
             description="Meshes that move with the hair; the vertex group 'pin' holds them",
+            **kept,
         ),
-        **{name: PointerProperty(type=bpy.types.Object) for name in ("guide_curves", "lock_curves", "hair_curves")},
-        **{name: PointerProperty(type=bpy.types.Object) for name in ("lock_motion", "hair_motion")},
-        "cloth_motion": CollectionProperty(type=PlayedCloth),
+        **{name: PointerProperty(type=bpy.types.Object, **kept) for name in CURVES},
+        "cloth_motion": CollectionProperty(type=PlayedCloth, **rows),
     }
     top = type("RINGLET_PG_head", (bpy.types.PropertyGroup,), {"__annotations__": head})
     return [*classes, scalp, shape, top], top
@@ -293,12 +301,13 @@ def register() -> None:
     for one in classes:
         bpy.utils.register_class(one)
     _registered[:] = classes
-    bpy.types.Object.ringlet = PointerProperty(type=top)
+    bpy.types.Object.ringlet = PointerProperty(type=top, override={"LIBRARY_OVERRIDABLE"})
     bpy.types.Text.ringlet_changes = StringProperty(options={"HIDDEN"})
+    bpy.types.Text.ringlet_head = StringProperty(options={"HIDDEN"})  # of a recipe: id of the head that it was made for
 
 
 def unregister() -> None:
-    del bpy.types.Object.ringlet, bpy.types.Text.ringlet_changes
+    del bpy.types.Object.ringlet, bpy.types.Text.ringlet_changes, bpy.types.Text.ringlet_head
     for one in reversed(_registered):
         bpy.utils.unregister_class(one)
     _registered.clear()

@@ -13,12 +13,16 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from . import grooming, meshes
+from . import grooming, identity, meshes
+from .edited_text import stem_of
+from .identity import head_with, new_text
+from .names import distinct, file_name
 from .properties import Document, scale
 from .refused import Refused
 from .session import Request, session
 
-COLLIDERS, CLOTH, CACHE, HAIR = "colliders.usdc", "cloth.usdc", "cache.usdc", "hair.usdc"
+# The cache is of the head in HEAD, which stays as it was simulated while the groom goes on.
+HEAD, COLLIDERS, CLOTH, CACHE, HAIR = "shot_head.usdc", "colliders.usdc", "cloth.usdc", "cache.usdc", "hair.usdc"
 CLOTH_PRIMS = "/groom/cloths/cloth"  # in the cache, where the scene of the file of cloth is referenced
 PIN = "pin"  # vertex group of cloth that is held
 MODIFIER = "Ringlet cache"
@@ -44,15 +48,16 @@ friction = 0.3
 class Run:
     """A shot in progress.
 
-    bodies: what moves: the head, then colliders and cloth; with their points of each frame so far
-    files:  of those, by the name of the file
+    head:   its id
+    files:  what moves, the head, then colliders and cloth, by the name of the file; each with its name in there
+    points: of those in each frame so far, by the number of the object
     """
 
     head: str
     frames: tuple[int, int]
     resume: bool
-    files: dict[str, list[bpy.types.Object]]
-    points: dict[str, list[np.ndarray]] = field(default_factory=dict)
+    files: dict[str, list[tuple[str, bpy.types.Object]]]
+    points: dict[int, list[np.ndarray]] = field(default_factory=dict)
     next_frame: int = 0
     before: int = 0
     request: int = 0
@@ -78,8 +83,8 @@ def begin_text(head: bpy.types.Object) -> None:
     """Gives a head a shot to start from."""
     own = head.ringlet
     if own.shot is None:
-        own.shot = bpy.data.texts.new(f"{head.name}.shot.toml")
-        own.shot.from_string(STARTING_SHOT.format(head=head.name, recipe=own.recipe.name))
+        content = STARTING_SHOT.format(head=head.name, recipe=grooming.recipe_file(own.recipe))
+        own.shot = new_text(head.name, "shot", head, content)
 
 
 def start(head: bpy.types.Object, *, resume: bool = False) -> None:
@@ -89,10 +94,14 @@ def start(head: bpy.types.Object, *, resume: bool = False) -> None:
     if not bpy.data.filepath:
         raise Refused("The .blend has no file yet; save it first, since simulated frames are kept next to it")
     scene = bpy.context.scene
-    files = {grooming.HEAD: [head], COLLIDERS: _meshes(head, "colliders"), CLOTH: _meshes(head, "cloth")}
+    files = {
+        HEAD: [(grooming.PRIM, head)],
+        COLLIDERS: _named(_meshes(head, "colliders")),
+        CLOTH: _named(_meshes(head, "cloth")),
+    }
     begin_text(head)
     # Roots take over the motion that they have from the frame before the first.
-    run = Run(head.name_full, (scene.frame_start, scene.frame_end), resume, files)
+    run = Run(head.ringlet.id, (scene.frame_start, scene.frame_end), resume, files)
     run.next_frame, run.before = scene.frame_start - 1, scene.frame_current
     shots.run, shots.message, shots.notes, shots.stage, shots.part = run, "", [], "Reading the scene", 0.0
 
@@ -104,6 +113,7 @@ def cancel() -> None:
     if shots.run.request:
         session.cancel(shots.run.request)
     else:
+        bpy.context.scene.frame_set(shots.run.before)
         _end("canceled")
 
 
@@ -121,36 +131,48 @@ def advance() -> None:
             bpy.context.scene.frame_set(run.before)
             _send(run)
     except (Refused, ReferenceError) as error:
+        bpy.context.scene.frame_set(run.before)
         _end(str(error) if isinstance(error, Refused) else "A mesh of the shot was removed; simulate again")
 
 
 def _read_frame(run: Run) -> None:
-    things = [thing for own in run.files.values() for thing in own]
+    things = [thing for own in run.files.values() for _, thing in own]
     with meshes.readable(things):
         bpy.context.scene.frame_set(run.next_frame)
         for thing in things:
-            run.points.setdefault(thing.name_full, []).append(meshes.posed_points(thing))
+            run.points.setdefault(thing.session_uid, []).append(meshes.posed_points(thing))
     run.next_frame += 1
 
 
 def _send(run: Run) -> None:
-    head = bpy.data.objects[run.head]
+    head = head_with(run.head)
+    if head is None:
+        raise Refused("The head of the shot was removed; simulate another")
     folder, scene = str(grooming.folder_of(head)), bpy.context.scene
     space = {"up_axis": "Z", "meters_per_unit": scale(), "fps": scene.render.fps / scene.render.fps_base}
-    failed = Request(lambda _: None, _end)
+    writing = Request(lambda _: None, _end)
     for file, things in run.files.items():
         if not things:
             continue
         bodies = []
-        for thing in things:
+        for name, thing in things:
             rest = grooming.rest_matrix(head) if thing is head else Matrix(thing.matrix_world)
             arrays = meshes.rest_arrays(thing, rest)
-            bodies.append((thing, {**arrays, "motion": np.stack(run.points[thing.name_full])}))
+            bodies.append((name, thing, {**arrays, "motion": np.stack(run.points[thing.session_uid])}))
         described, arrays = meshes.message(bodies)
         sent = {"file": file, "meshes": described, "first_frame": run.frames[0] - 1, **space}
-        session.send("write_meshes", failed, arrays, folder=folder, **sent)
-    grooming.state_of(head).sent.pop(grooming.HEAD, None)  # now it moves; the groom is of the same rest pose
+        if file == [name for name, own in run.files.items() if own][-1]:
+            writing = Request(lambda _: _simulate(run), _end, canceled=lambda _: _end("canceled"))
+        run.request = session.send("write_meshes", writing, arrays, folder=folder, **sent)
     run.points.clear()
+    shots.stage = "Starting"
+
+
+def _simulate(run: Run) -> None:
+    """Simulates when Ringlet has written all files: it simulates next to what else it does."""
+    head = head_with(run.head)
+    if shots.run is not run or head is None:
+        return
     request = Request(
         done=lambda message: _done(message.header),
         failed=_end,
@@ -158,29 +180,34 @@ def _send(run: Run) -> None:
         warned=shots.notes.append,
         canceled=lambda message: _end("canceled", message.header.get("left", 0)),
     )
-    shots.stage = "Starting"
-    texts = {"recipe": grooming.recipe_message(head), "shot": shot_message(head, run)}
+    texts = {"recipe": grooming.recipe_message(head, file=HEAD), "shot": shot_message(head, run)}
+    folder = str(grooming.folder_of(head))
     run.request = session.send("simulate", request, folder=folder, cache=CACHE, resume=run.resume, **texts)
 
 
-def shot_message(head: bpy.types.Object, run: Run | None = None) -> dict:
+def shot_message(head: bpy.types.Object, run: Run) -> dict:
     """The shot of a head, with the frames of the scene and the collections of the panel, as Ringlet takes it."""
-    document, own, scene = Document(head, "shot"), head.ringlet, bpy.context.scene
-    frames = run.frames if run else (scene.frame_start, scene.frame_end)
+    document, own = Document(head, "shot"), head.ringlet
     text = document.text
-    if _meshes(head, "colliders"):
+    if run.files[COLLIDERS]:
         text += f'\n[[collider]]\n\n[[collider]]\nfile = "{COLLIDERS}"\n'
-    for thing in _meshes(head, "cloth"):
-        text += f'\n[[cloth]]\nfile = "{CLOTH}"\nmesh = "/scene/{meshes.identifier(thing.name)}"\n'
+    for name, thing in run.files[CLOTH]:
+        text += f'\n[[cloth]]\nfile = "{CLOTH}"\nmesh = "/scene/{name}"\n'
         if PIN in thing.vertex_groups:
             text += f'\n[[cloth.pin]]\nmap = "{PIN}"\nstiffness = 100\n'
-    overlay = [{"set": ["frames"], "value": list(frames)}, {"set": ["groom"], "value": own.recipe.name}]
+    recipe = grooming.recipe_file(own.recipe)
+    overlay = [{"set": ["frames"], "value": list(run.frames)}, {"set": ["groom"], "value": recipe}]
     return {
-        "name": own.shot.name,
+        "name": f"{file_name(stem_of(own.shot.name))}.shot.toml",
         "text": text,
         "changes": json.loads(document.changes or "[]"),
         "overlay": overlay,
     }
+
+
+def _named(things: list[bpy.types.Object]) -> list[tuple[str, bpy.types.Object]]:
+    """Objects with their names in a file of USD, all different."""
+    return list(zip(distinct([thing.name for thing in things]), things, strict=True))
 
 
 def _meshes(head: bpy.types.Object, collection: str) -> list[bpy.types.Object]:
@@ -199,13 +226,14 @@ def _end(line: str, left: int = 0) -> None:
 
 
 def _done(header: dict) -> None:
-    head = bpy.data.objects.get(shots.run.head) if shots.run else None
+    run = shots.run
+    head = head_with(run.head) if run else None
     _end("")
     shots.notes = header["notes"]
     if head is not None:
         cache = Path(header["path"])
         play(head, "lock_curves", "lock_motion", cache, "/groom/locks")
-        play_cloth(head, cache)
+        play_cloth(head, cache, run.files[CLOTH])
 
 
 def bake(head: bpy.types.Object) -> None:
@@ -215,11 +243,11 @@ def bake(head: bpy.types.Object) -> None:
         raise Refused(f"{folder / CACHE}: there is no simulated shot yet; simulate first")
     if shots.run is not None:
         raise Refused("A simulation runs; wait for it or cancel it")
-    run = Run(head.name_full, (0, 0), False, {})
+    run = Run(head.ringlet.id, (0, 0), False, {})
     shots.run, shots.message, shots.stage = run, "", "Hairs"
 
     def done(message) -> None:
-        head = bpy.data.objects.get(run.head)
+        head = head_with(run.head)
         _end("")
         if head is not None and head.ringlet.hair_curves is not None:
             play(head, "hair_curves", "hair_motion", Path(message.header["path"]), "/groom/hairs")
@@ -244,12 +272,16 @@ def play(head: bpy.types.Object, still: str, moving: str, path: Path, prim: str)
     show_motion(head)
 
 
-def play_cloth(head: bpy.types.Object, path: Path) -> None:
-    """Shows copies of cloth that follow a cache, in place of the cloth. Modifiers that change the topology stay."""
+def play_cloth(head: bpy.types.Object, path: Path, cloths: list[tuple[str, bpy.types.Object]]) -> None:
+    """Shows copies of cloth that follow a cache, in place of the cloth. Modifiers that change the topology stay.
+
+    cloths: with their names in the file that was simulated
+    """
     clear_cloth(head)
-    worn = [thing for thing in _meshes(head, "cloth") if not thing.hide_viewport]
+    there = set(bpy.data.objects)
+    worn = [(name, thing) for name, thing in cloths if thing in there and not thing.hide_viewport]
     file = open_cache(path) if worn else None
-    for source in worn:
+    for name, source in worn:
         thing = source.copy()
         thing.name, thing.data = f"{source.name} simulated", source.data.copy()
         thing.shape_key_clear()
@@ -261,7 +293,7 @@ def play_cloth(head: bpy.types.Object, path: Path) -> None:
         for collection in head.users_collection or [bpy.context.scene.collection]:
             collection.objects.link(thing)
         thing.matrix_world = Matrix()
-        modifier = follow(thing, file, f"{CLOTH_PRIMS}/{meshes.identifier(source.name)}")
+        modifier = follow(thing, file, f"{CLOTH_PRIMS}/{name}")
         modifier.read_data = {"VERT"}
         thing.modifiers.move(len(thing.modifiers) - 1, 0)
         pair = head.ringlet.cloth_motion.add()
@@ -270,10 +302,12 @@ def play_cloth(head: bpy.types.Object, path: Path) -> None:
 
 
 def open_cache(path: Path) -> bpy.types.CacheFile:
-    """A file of motion, opened once more."""
+    """A file of motion, opened once more; its path moves with the .blend."""
     known = set(bpy.data.cache_files)
     bpy.ops.cachefile.open(filepath=str(path))
-    return next(file for file in bpy.data.cache_files if file not in known)
+    file = next(file for file in bpy.data.cache_files if file not in known)
+    file.filepath = bpy.path.relpath(str(path))
+    return file
 
 
 def follow(thing: bpy.types.Object, file: bpy.types.CacheFile, prim: str) -> bpy.types.Modifier:
@@ -284,12 +318,36 @@ def follow(thing: bpy.types.Object, file: bpy.types.CacheFile, prim: str) -> bpy
 
 
 def show_motion(head: bpy.types.Object) -> None:
-    """Shows the finest curves there are: simulated before still ones, hairs before locks."""
+    """Shows the finest curves there are: simulated before still ones, hairs before locks. Those whose simulated frames
+    are missing are hidden, since they would not be on the skin."""
     own = head.ringlet
-    order = [own.hair_motion, own.lock_motion, own.hair_curves, own.lock_curves, own.guide_curves]
-    there = [thing for thing in order if thing is not None]
-    for thing in there:
+    moving = [thing for thing in (own.hair_motion, own.lock_motion) if thing is not None]
+    still = [own.hair_curves, own.lock_curves, own.guide_curves]
+    there = [*(thing for thing in moving if not missing(thing)), *(thing for thing in still if thing is not None)]
+    for thing in {*moving, *there}:
         thing.hide_viewport = thing.hide_render = thing is not there[0]
+
+
+def missing(thing: bpy.types.Object) -> list[Path]:
+    """Files that an object plays and that are not there."""
+    return [path for file in identity.cache_files(thing) if not (path := identity.path_of(file)).is_file()]
+
+
+def watch(head: bpy.types.Object) -> None:
+    """Shows the groom where the simulated frames of a head have gone, and the motion when they are back."""
+    gone = sorted({path for thing in identity.players(head) for path in missing(thing)})
+    line = f"{gone[0]}: is missing; put it back next to the .blend, or simulate again" if gone else ""
+    state = grooming.state_of(head)
+    if state.missing != line:
+        state.missing = line
+        for file in {file for thing in identity.players(head) for file in identity.cache_files(thing)}:
+            file.filepath = file.filepath  # is opened again
+        show_motion(head)
+        for pair in head.ringlet.cloth_motion:
+            if pair.source is not None and pair.moving is not None:
+                gone_one = bool(missing(pair.moving))
+                pair.moving.hide_viewport = pair.moving.hide_render = gone_one
+                pair.source.hide_viewport = pair.source.hide_render = not gone_one
 
 
 def clear(head: bpy.types.Object, moving: str) -> None:
@@ -312,7 +370,7 @@ def clear_cloth(head: bpy.types.Object) -> None:
 
 def remove_player(thing: bpy.types.Object) -> None:
     """Removes an object that follows a cache, and the cache where nothing else does."""
-    files = [one.cache_file for one in thing.modifiers if one.type == "MESH_SEQUENCE_CACHE" and one.cache_file]
+    files = identity.cache_files(thing)
     grooming.remove(thing)
     for file in files:
         if not any(file == getattr(one, "cache_file", None) for own in bpy.data.objects for one in own.modifiers):

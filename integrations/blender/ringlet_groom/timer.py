@@ -7,10 +7,11 @@ import traceback
 import bpy
 from bpy.app.handlers import persistent
 
-from . import grooming, shots
+from . import grooming, identity, shots
 from .session import session
 
 BUSY, IDLE = 0.03, 0.2  # s between two looks
+_objects = 0  # of the .blend, when they were looked through last
 
 
 def tick() -> float:
@@ -19,10 +20,12 @@ def tick() -> float:
     Blender ends a timer that raises: a mistake of the extension becomes a line in the panel, and the timer goes on.
     """
     try:
+        identity.settle()
         session.poll()
         shots.advance()
-        for head in list(grooming.heads()):
+        for head in list(identity.heads()):
             grooming.watch(head)
+            shots.watch(head)
     except Exception as error:
         traceback.print_exc()
         session.error = f"This is a mistake in the extension ({error}); see the console"
@@ -43,10 +46,15 @@ def _redraw() -> None:
 
 @persistent
 def _changed(_scene: bpy.types.Scene, graph: bpy.types.Depsgraph) -> None:
-    """Forgets the arrays of objects whose geometry or place has changed."""
+    """Looks for copies of heads among new objects, and forgets the arrays of those whose geometry or place has
+    changed."""
+    global _objects
+    if _objects != len(bpy.data.objects):
+        identity.settle()
+        _objects = len(bpy.data.objects)
     for update in graph.updates:
         if isinstance(update.id, bpy.types.Object) and (update.is_updated_geometry or update.is_updated_transform):
-            grooming.forget(update.id.name_full)
+            grooming.forget(update.id)
 
 
 @persistent
