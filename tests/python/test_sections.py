@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from ringlet.data.groom import SECTION
+from ringlet.data.painted import painted
 from ringlet.groom.scalp import Scalp
 from ringlet.groom.sections import EDGE, STRAND
 from ringlet.groom.shares import REACH
@@ -44,6 +45,40 @@ def test_locks_outside_of_the_sections_grow_only_where_they_are_counted():
     masked = "strands = 3\nmask = { where = 'x > 0' }"
     assert (groom(masked).locks.curve[STRAND] >= 0).all()
     assert (groom(masked, locks="points = 60\ncount = 200").locks.curve[STRAND] < 0).sum() > 50
+
+
+def painted_ball():
+    """A ball whose painted ``hair`` is over 0 where z is, but for facets that cross the border."""
+    made = ball(rings=20)
+    made.maps["hair"] = np.maximum(made.points[made.triangles][:, :, 2], 0.0)
+    return made
+
+
+@pytest.mark.parametrize("pattern", PATTERNS)
+def test_sections_and_their_strands_are_only_where_the_density_is_painted(pattern):
+    scalp = painted_ball()
+    made = groom(f"pattern = '{pattern}'\nsize = 6\nstrands = 3", "", "points = 9\ndensity = 'hair'", scalp=scalp)
+    assert len(made.locks) >= 9 and (painted("hair", made.locks, scalp, "test") > 0.0).all()
+    assert np.diff(np.unique(made.locks.curve[SECTION], return_counts=True)[1]).max(initial=0) == 0
+    made.hairs = {"per_lock": 40, "frizz": 0.0, "stray": 0.0}
+    roots = make_hairs(made).curves.roots
+    grows = Scalp(scalp, None).grows(roots, "hair", "test")
+    assert grows.mean() > 0.98  # shares are stars: a root may be just beyond the border, between two rays
+
+
+def test_rows_end_where_the_density_does():
+    locks = groom(
+        "pattern = 'rows'\nstrands = 3\nsize = 3",
+        "[[shape]]\nop = 'cornrow'\n",
+        "points = 200\ndensity = 'hair'",
+        scalp=painted_ball(),
+    ).locks
+    assert len(locks) >= 6 and (painted("hair", locks, painted_ball(), "test") > 0.0).mean() > 0.95
+
+
+def test_a_density_without_a_number_of_locks_is_refused():
+    with pytest.raises(UserError, match="locks has a density, but every guide becomes a lock; give it 'count'"):
+        parse_recipe("ringlet = 2\n[locks]\ndensity = 'hair'\n")
 
 
 def test_masks_and_values_go_by_places_in_sections():

@@ -59,7 +59,8 @@ def painted(name: str, curves: Curves, scalp: Mesh, what: str) -> NDArray[np.flo
         values = _from_texture(name, curves, scalp, what, scalp.textures[name].at)
     elif name in scalp.maps:
         corners = scalp.maps[name][curves.curve["root_triangle"]]
-        values = np.einsum("kc,kc->k", corners, curves.curve["root_barycentric"])
+        within = np.maximum(curves.curve["root_barycentric"], 0.0)  # rounding leaves roots on edges just outside
+        values = np.einsum("kc,kc->k", corners, within)
     else:
         known = sorted(own | scalp.textures.keys() | scalp.maps.keys())
         remedy = (

@@ -46,6 +46,12 @@ class Row:
         """Length [m]."""
         return float(np.linalg.norm(np.diff(self.points, axis=0), axis=1).sum())
 
+    def where(self, grows: NDArray[np.bool_]) -> Row:
+        """The row from the first to the last of its points at which hair grows, shape (k,); empty if at none."""
+        found = np.flatnonzero(grows)
+        kept = slice(found[0], found[-1] + 1) if len(found) else slice(0)
+        return Row(self.points[kept], self.normals[kept])
+
     def shortened(self, end: float) -> Row:
         """The row without an end of that length [m]; a half of it stays."""
         count = len(self.points)
@@ -65,7 +71,10 @@ def middle_rows(division: Division, scalp: Scalp) -> dict[int, Row]:
     for section in np.unique(at[SECTION][at[SECTION] >= 0]):
         own = at[SECTION] == section
         line = _middle_line(places[own], at[V][own], BIN * size)
-        if line is not None and (row := Row.of(line, scalp)).length >= LEAST * size:
+        if line is None:
+            continue
+        row = Row.of(line, scalp)
+        if (row := row.where(division.grows(row.points))).length >= LEAST * size:
             rows[int(section)] = row
     return rows
 
@@ -75,6 +84,7 @@ def drawn_rows(curves: Curves, division: Division, scalp: Scalp, what: str) -> d
     rows: dict[int, Row] = {}
     for k in range(len(curves)):
         row = Row.of(np.asarray(curves[k], np.float64), scalp)
+        row = row.where(division.grows(row.points))
         section = division.at(row.points)[SECTION]
         if not (section >= 0).any():
             continue

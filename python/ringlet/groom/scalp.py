@@ -163,6 +163,14 @@ class Scalp:
         chosen = order[:count][density[order[:count]] > 0.0]
         return ids, triangle, barycentric, np.sort(selected[chosen])
 
+    def grows(self, places: NDArray, density: str | None, what: str) -> NDArray[np.bool_]:
+        """Whether a painted density is over 0 at places (n, 3) [m] of the region, shape (n,); everywhere for None."""
+        if density is None:
+            return np.ones(len(places), np.bool_)
+        flat = np.ascontiguousarray(places, np.float64)
+        triangle, barycentric, _ = _core.bind_roots(self.points, self.triangles, flat, self.region)
+        return self._painted(density, triangle, barycentric, what) > 0.0
+
     def _painted(self, name: str, triangle: NDArray, barycentric: NDArray, what: str) -> NDArray[np.float64]:
         """Values of a painted map at samples, shape (n,)."""
         count = len(triangle)

@@ -13,6 +13,7 @@ from scipy.spatial import KDTree
 
 from ringlet import _core
 from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
 from ringlet.data.groom import SECTION
 from ringlet.data.quantities import Quantity, Section, refuse
 from ringlet.data.random import Random
@@ -24,6 +25,7 @@ MOST_CELLS = 4096  # along each axis of the chart, so that a section's id fits 2
 SAMPLES_A_SIDE = 6  # of the scalp, per side of a section
 WHOLE = 0.35  # a cell with less than this part of the usual area, or a row of the usual width, belongs to its neighbour
 FLATTEST = 20.0  # radius of the sphere through a flat scalp, in sizes of the scalp
+NEARER = 3  # tries of strands to grow: at their place, and nearer to the middle by a half each
 STRANDS_APART = 0.2  # distance of a section's strands from its middle at the scalp, in sizes of the section
 
 # Further curve attributes of locks in sections: which of its strands; place in the section, 0 to 1 each; distance
@@ -72,13 +74,26 @@ class Sections(Section):
             raise refuse("needs both pattern = 'drawn' and 'part_lines', or none of them; name curves of [curves]")
         return self
 
-    def divide(self, scalp: Scalp, seed: int, helper: Callable[[str, str], Curves]) -> Division:
-        """Divides the region of the scalp; ``helper`` returns the helper curves of a name for a setting."""
+    def divide(
+        self, scalp: Scalp, seed: int, helper: Callable[[str, str], Curves], density: str | None = None
+    ) -> Division:
+        """Divides the region of the scalp, as far as a painted density is over 0.
+
+        helper: returns the helper curves of a name for a setting
+        """
         chart = Chart.of(scalp)
         _, triangle, barycentric = scalp.sample(
             scalp.count_for_spacing(self.size / SAMPLES_A_SIDE, "locks.sections.size"), seed
         )
         places = scalp.positions(triangle, barycentric)
+
+        def grows(places: NDArray) -> NDArray[np.bool_]:
+            return scalp.grows(places, density, "locks.density")
+
+        painted = grows(places)
+        if not painted.any():
+            raise UserError(f"locks.density '{density}' is 0 all over {scalp.where}; paint where hair is to grow")
+        places, triangle, barycentric = places[painted], triangle[painted], barycentric[painted]
         drawn = None
         if self.part_lines is not None:
             curves = helper(self.part_lines, "sections.part_lines")
@@ -92,7 +107,7 @@ class Sections(Section):
         bound = {"root_triangle": triangle[nearest], "root_barycentric": barycentric[nearest]}
         roots = Curves(places[nearest], np.arange(len(ids) + 1, dtype=np.int32), ids.astype(np.int64), bound)
         chosen = self.mask.weights(roots, scalp.mesh, Random(seed, "locks/sections"), "locks.sections.mask")[:, 0] > 0.5
-        return Division(self, chart, seed, merged, roots, chosen, drawn)
+        return Division(self, chart, seed, merged, roots, chosen, grows, drawn)
 
     def _cells(self, chart: Chart, places: NDArray, seed: int, drawn: DrawnPartLines | None) -> Cells:
         """The pattern's cells at places (n, 3) [m]."""
@@ -195,6 +210,7 @@ class Division:
 
     roots:  the middles of the sections, as curves of one point named by the sections' ids
     chosen: whether the mask has the section, shape (sections,)
+    grows:  whether hair grows at places (n, 3) [m] by the painted density, shape (n,)
     """
 
     sections: Sections
@@ -203,13 +219,15 @@ class Division:
     merged: Merged
     roots: Curves
     chosen: NDArray[np.bool_]
+    grows: Callable[[NDArray], NDArray[np.bool_]]
     drawn: DrawnPartLines | None = None
 
     def at(self, places: NDArray) -> dict[str, NDArray]:
-        """Attributes of places (n, 3) [m] in their sections, shape (n,) each; section −1 where the mask has none."""
+        """Attributes of places (n, 3) [m] in their sections, shape (n,) each; section −1 where the mask has none, and
+        where no hair grows."""
         cells = self.sections._cells(self.chart, places, self.seed, self.drawn)
         section = self.merged.sections(cells.key, places)
-        has = self.chosen[np.searchsorted(self.roots.ids, section)]
+        has = self.chosen[np.searchsorted(self.roots.ids, section)] & self.grows(places)
         return {
             SECTION: np.where(has, section, -1).astype(np.int32),
             U: cells.u.astype(np.float32),
@@ -217,19 +235,28 @@ class Division:
             EDGE: (cells.edge * self.sections.size).astype(np.float32),
         }
 
-    def grows(self, at: dict[str, NDArray]) -> NDArray[np.bool_]:
-        """Whether loose hair grows at such places: on no part line, and in no section that has strands."""
+    def loose(self, at: dict[str, NDArray]) -> NDArray[np.bool_]:
+        """Whether hair of ``count`` grows at such places: on no part line, and in no section that has strands."""
         outside = at[SECTION] < 0
         return outside | ((at[EDGE] >= 0.5 * self.sections.gap) & (self.sections.strands is None))
 
     def strand_roots(self, scalp: Scalp) -> tuple[NDArray[np.int32], NDArray[np.float64], dict[str, NDArray]]:
-        """Where the strands of the chosen sections grow: triangles (n,), barycentrics (n, 3), attributes (n,) each."""
+        """Where the strands of the chosen sections grow: triangles (n,), barycentrics (n, 3), attributes (n,) each.
+
+        Strands come nearer to the middle of their section where hair does not grow at all of their roots; a section in
+        which they would still not grow has none.
+        """
         roots, strands = self.roots.take(self.chosen), self.sections.strands or 0
         frames = scalp.frames(roots)
         angle = 2.0 * np.pi * np.arange(strands) / max(strands, 1)
         apart = STRANDS_APART * self.sections.size if strands > 1 else 0.0
         around = apart * np.stack([np.cos(angle), np.sin(angle)], axis=1)
-        places = roots.points[:, None] + np.einsum("sxk,nk->snx", frames[:, :, :2], around)
+        offsets = np.einsum("sxk,nk->snx", frames[:, :, :2], around)
+        grow = np.zeros(len(roots), np.bool_)
+        for _ in range(NEARER):
+            grow = self.grows((roots.points[:, None] + offsets).reshape(-1, 3)).reshape(len(roots), -1).all(axis=1)
+            offsets[~grow] *= 0.5
+        roots, places = roots.take(grow), (roots.points[:, None] + offsets)[grow]
         region = np.ascontiguousarray(scalp.region, np.int32)
         flat = np.ascontiguousarray(places.reshape(-1, 3))
         triangle, barycentric, _ = _core.bind_roots(scalp.points, scalp.triangles, flat, region)

@@ -132,7 +132,15 @@ def make_groom(
             if name == "collide":
                 before_contact = curves
             context = Context(
-                recipe.seed, surface, name, recipe.locks.points, helpers, meshes, shapes, recipe.locks.sections
+                recipe.seed,
+                surface,
+                name,
+                recipe.locks.points,
+                helpers,
+                meshes,
+                shapes,
+                recipe.locks.sections,
+                recipe.locks.density,
             )
             before = curves
             curves, key = _run(operator, curves, key, context, memory)

@@ -79,7 +79,7 @@ class Cornrow(Woven):
         leaders, rows = self.leaders(fine, self.weights(fine, context)[:, :1] > 0.5)
         if context.sections is None or not rows:
             return curves
-        division = context.sections.divide(context.scalp, context.seed, context.helper)
+        division = context.sections.divide(context.scalp, context.seed, context.helper, context.density)
         lines = self._rows(division, context)
         has = np.array([int(section) in lines for section in leaders.ids])
         if not has.any():

@@ -38,7 +38,8 @@ class Locks(Operator):
     )
     density: str | None = Field(
         default=None,
-        description="painted values: where they are higher, locks stand closer; none grow where they are 0",
+        description="painted values: where they are higher, locks stand closer; none grow where they are 0. Sections "
+        "and their strands are only where they are over 0",
     )
     points: int = Field(
         default=64,
@@ -67,6 +68,10 @@ class Locks(Operator):
             raise refuse("has both 'count' and 'spacing'; give one of them")
         if self.hairline is not None and self.count is None and self.spacing is None and self.sections is None:
             raise refuse("has a hairline, but every guide becomes a lock; give it 'count' or 'spacing'")
+        if self.density is not None and self.count is None and self.spacing is None and self.sections is None:
+            raise refuse(
+                "has a density, but every guide becomes a lock; give it 'count' or 'spacing', or paint guides.density"
+            )
         return self
 
     def apply(self, curves: Curves, context: Context) -> Curves:
@@ -104,9 +109,9 @@ class Locks(Operator):
         """Roots outside of part lines, and the strands of sections: ids, triangles, barycentrics, attributes."""
         assert self.sections is not None
         scalp = context.scalp
-        division = self.sections.divide(scalp, context.seed, context.helper)
+        division = self.sections.divide(scalp, context.seed, context.helper, self.density)
         at = division.at(scalp.positions(triangle, barycentric))
-        loose = division.grows(at)
+        loose = division.loose(at)
         if self.sections.strands is not None and self.count is None and self.spacing is None:
             loose[:] = False
         at = {name: values[loose] for name, values in at.items()} | {STRAND: np.full(loose.sum(), -1, np.int32)}

@@ -35,6 +35,7 @@ class Context:
     meshes:      helper meshes by name
     shapes:      the locks before the curl operator; None up to it
     sections:    settings of the sections of the scalp; None without
+    density:     name of the painted density of locks; None without
     """
 
     seed: int
@@ -45,6 +46,7 @@ class Context:
     meshes: Mapping[str, Mesh] = field(default_factory=dict)
     shapes: Curves | None = None
     sections: Sections | None = None
+    density: str | None = None
 
     def random(self, setting: str = "") -> Random:
         """Random numbers of one setting of this operator."""
