@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -344,6 +345,7 @@ def _obstacles(shot: Shot, groom: Groom, garments: Sequence[Garment], frames: tu
     """The obstacles of a shot at its frames; of several settings for one mesh the last counts."""
     from ringlet import io, sim
     from ringlet import shot as shots
+    from ringlet.data.orientation import outward
 
     if not shot.touching:
         return []
@@ -359,7 +361,10 @@ def _obstacles(shot: Shot, groom: Groom, garments: Sequence[Garment], frames: tu
             if of_head and collider.mesh is None:
                 bodies = [body for body in bodies if groom.shows(body.prim)]
         for body in bodies:
-            found[file.resolve(), body.prim] = sim.Obstacle(body.mesh, body.clip, collider)
+            triangles = outward(body.mesh.points, body.mesh.triangles, groom.scalp.points)
+            found[file.resolve(), body.prim] = sim.Obstacle(
+                replace(body.mesh, triangles=triangles), body.clip, collider
+            )
     for garment in garments:  # cloth is no obstacle, even where its file is the head's
         assert garment.file is not None
         found.pop((garment.file.resolve(), garment.prim), None)

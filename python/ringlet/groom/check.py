@@ -15,6 +15,7 @@ from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Mesh
+from ringlet.data.orientation import outward
 from ringlet.data.thickness import own_radii
 from ringlet.groom.operators.operator import packed
 from ringlet.groom.pins import PIN
@@ -125,7 +126,9 @@ class Bodies:
         self.on_scalp = np.zeros(len(groom.scalp.triangles), bool)
         self.on_scalp[region] = True
         self.solids = [
-            _core.Solid(np.ascontiguousarray(mesh.points, np.float64), np.ascontiguousarray(mesh.triangles, np.int32))
+            _core.Solid(
+                np.ascontiguousarray(mesh.points, np.float64), outward(mesh.points, mesh.triangles, groom.scalp.points)
+            )
             for mesh in (groom.scalp, *others)
             if len(mesh.triangles)
         ]

@@ -13,6 +13,7 @@ from ringlet.data import limits
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
+from ringlet.data.orientation import facing_inside, outward
 from ringlet.data.painted import painted
 from ringlet.data.random import Random
 
@@ -47,12 +48,16 @@ class Scalp:
     @cached_property
     def solid(self) -> _core.Solid:
         """The mesh as a solid for distance queries."""
-        return _core.Solid(self.points, self.triangles)
+        return _core.Solid(self.points, outward(self.points, self.triangles))
 
     @cached_property
     def bodies(self) -> list[_core.Solid]:
         """The mesh and its colliders as solids."""
-        return [self.solid, *(_core.Solid(*_contiguous(body)) for body in self.colliders)]
+        colliders = (
+            _core.Solid(_contiguous(body)[0], outward(body.points, body.triangles, self.points))
+            for body in self.colliders
+        )
+        return [self.solid, *colliders]
 
     @cached_property
     def areas(self) -> NDArray[np.float64]:
@@ -302,3 +307,8 @@ def _check_region(scalp: Scalp) -> None:
         )
     if len(np.unique(edges, axis=0)) < len(edges):
         raise UserError(f"{scalp.where}: neighbouring faces have opposite orientations; make their normals agree")
+    if count := int(facing_inside(scalp.points, scalp.triangles)[scalp.region].sum()):
+        raise UserError(
+            f"{scalp.where}: {count} of {len(scalp.region)} triangles face the inside of the mesh, where their hair "
+            "would grow; turn the normals outwards"
+        )

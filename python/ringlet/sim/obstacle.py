@@ -69,10 +69,10 @@ class Obstacle:
         return Body(self.at(frame), self.mesh.triangles, self.settings.thickness, self.settings.friction)
 
     def is_surface_of(self, scalp: Mesh) -> bool:
-        """Whether it is the scalp that locks are rooted in."""
+        """Whether it is the scalp that locks are rooted in, whichever way its triangles are wound."""
         mine, theirs = self.mesh, scalp
         return (
-            np.array_equal(mine.triangles, theirs.triangles)
+            np.array_equal(np.sort(mine.triangles, axis=1), np.sort(theirs.triangles, axis=1))
             and mine.points.shape == theirs.points.shape
             and bool(np.abs(mine.points - theirs.points).max() < 1e-6)
         )

@@ -13,6 +13,7 @@ from ringlet import _core
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
+from ringlet.data.orientation import outward
 from ringlet.data.painted import per_lock
 from ringlet.data.quantities import Section
 from ringlet.data.random import Random
@@ -65,9 +66,7 @@ class Context:
             remedy = did_you_mean(name, self.meshes) if self.meshes else f"; add a table [meshes.{name}]"
             raise UserError(f"{self.purpose}.{setting} is '{name}', which is no helper mesh{remedy}")
         mesh = self.meshes[name]
-        return _core.Solid(
-            np.ascontiguousarray(mesh.points, np.float64), np.ascontiguousarray(mesh.triangles, np.int32)
-        )
+        return _core.Solid(np.ascontiguousarray(mesh.points, np.float64), outward(mesh.points, mesh.triangles))
 
     def values(self, settings: Section, name: str, curves: Curves, table: str = "") -> NDArray[np.float64]:
         """Values of a varied setting per curve, shape (count,).
