@@ -1,8 +1,14 @@
 """Ringlet grooms tightly curled hair and simulates it."""
 
+import os
 from importlib import import_module
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
+
+# Threads of the core wait for one another actively for so many turns, some microseconds, then sleep. OpenMP reads this
+# when the core is loaded, so it stands before all imports of ours: docs/decisions/waiting_threads.md.
+if "OMP_WAIT_POLICY" not in os.environ:
+    os.environ.setdefault("GOMP_SPINCOUNT", "1000")
 
 from ringlet import api
 from ringlet.api import *
