@@ -254,7 +254,8 @@ class Division:
         offsets = np.einsum("sxk,nk->snx", frames[:, :, :2], around)
         grow = np.zeros(len(roots), np.bool_)
         for _ in range(NEARER):
-            grow = self.grows((roots.points[:, None] + offsets).reshape(-1, 3)).reshape(len(roots), -1).all(axis=1)
+            wanted = (roots.points[:, None] + offsets).reshape(-1, 3)
+            grow = self.grows(wanted).reshape(len(roots), strands).all(axis=1)
             offsets[~grow] *= 0.5
         roots, places = roots.take(grow), (roots.points[:, None] + offsets)[grow]
         region = np.ascontiguousarray(scalp.region, np.int32)
