@@ -10,7 +10,7 @@
 
 namespace ringlet {
 
-class SpringMasses final : public Block {
+class SpringMasses : public Block {
 public:
     SpringMasses(int object, int first, std::vector<Vec3> positions, double mass, double stiffness)
         : positions_(std::move(positions)), velocities_(positions_.size(), Vec3::Zero()), anchors_(positions_), mass_(mass),

@@ -63,6 +63,13 @@ def test_hair_that_keeps_too_little_of_its_motion_is_found_with_contact_alone() 
     assert finding.frames == [8] and finding.locks == [3, 9]
 
 
+def test_locks_for_which_the_solver_found_no_step_are_named() -> None:
+    statistics = frames(motion_kept=1.0)
+    statistics[4] |= {"stalled": 1, "stalled_locks": [7]}
+    (finding,) = judge(statistics).findings
+    assert finding.frames == [5] and finding.locks == [7] and "no step" in finding.what
+
+
 def test_curls_that_changed_are_counted() -> None:
     statistics = frames()
     statistics[1]["flips"], statistics[5]["too_straight"] = 2, 1

@@ -67,7 +67,7 @@ class Verdict:
 
 def judge(statistics: Statistics) -> Verdict:
     """The verdict on the statistics of a simulation, one dict a frame as in ``Cache.statistics``."""
-    found = [look(statistics) for look in (_broken, _lagging, _stretched, _slow, _unsolved, _changed)]
+    found = [look(statistics) for look in (_broken, _stalled, _lagging, _stretched, _slow, _unsolved, _changed)]
     findings = [finding for finding in found if finding]
     usable = not any(finding.unusable for finding in findings)
     if not usable:
@@ -122,6 +122,17 @@ def _stretched(statistics: Statistics) -> Finding | None:
     locks = list(dict.fromkeys(frame["worst_lock"] for frame in frames if "worst_lock" in frame))
     remedy = "raise solver.newton, or solver.substeps where the head moves fast"
     return Finding(f"Hair is stretched by up to {100 * worst:.2g} %", remedy, _numbers(frames), locks)
+
+
+def _stalled(statistics: Statistics) -> Finding | None:
+    """Locks that forces act on, and for which the solver has found no step."""
+    frames = [frame for frame in statistics if _number(frame, "stalled") > 0]
+    if not frames:
+        return None
+    count = sum(_number(frame, "stalled") for frame in frames)
+    locks = list(dict.fromkeys(lock for frame in frames for lock in frame.get("stalled_locks", [])))
+    what = f"The solver found no step {count:g} times, and left in place what had to move"
+    return Finding(what, "raise solver.substeps", _numbers(frames), locks)
 
 
 def _slow(statistics: Statistics) -> Finding | None:

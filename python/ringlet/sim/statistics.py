@@ -47,7 +47,9 @@ def frame_statistics(
 def _of_strands(reports: list[dict[str, NDArray[np.float64]]], locks: NDArray[np.integer]) -> dict[str, Any]:
     """Over all strands and substeps: sums of events, the worst values, energies at the end."""
     last = reports[-1]
-    unsolved = np.any([report["unconverged"] > 0 for report in reports], axis=0)
+
+    def locks_with(name: str) -> list[int]:
+        return [int(lock) for lock in locks[np.any([report[name] > 0 for report in reports], axis=0)]]
 
     def total(name: str) -> int:
         return int(sum(report[name].sum() for report in reports))
@@ -59,7 +61,9 @@ def _of_strands(reports: list[dict[str, NDArray[np.float64]]], locks: NDArray[np
         "newton": float(np.mean([report["newton"].mean() for report in reports])),
         "newton_max": int(worst("newton")),
         "unconverged": total("unconverged"),
-        "unconverged_locks": [int(lock) for lock in locks[unsolved]],
+        "unconverged_locks": locks_with("unconverged"),
+        "stalled": total("stalled"),
+        "stalled_locks": locks_with("stalled"),
         "line_search_cuts": total("cuts"),
         "residual": worst("residual"),
         "energy": {name: float(last[name].sum()) for name in ("stretch", "bend", "twist", "gravity", "kinetic")},
@@ -88,9 +92,10 @@ def _of_cloths(reports: list[list[dict[str, float]]], names: list[str]) -> dict[
 def _kept(moved: float, left: float) -> float | None:
     """The part of a frame's motion that its iterations have made, estimated from what is left of the last direction.
 
-    None where nothing has moved, which is no sign of having converged.
+    None where nothing has moved or is missing.
     """
-    return moved / (moved + max(left, 0.0)) if moved > 0.0 else None
+    wanted = moved + max(left, 0.0)
+    return moved / wanted if wanted > 0.0 else None
 
 
 def _of_contact(reports: list[dict[str, float]], penetrating: int, lagging: list[dict[str, Any]]) -> dict[str, Any]:
@@ -106,6 +111,7 @@ def _of_contact(reports: list[dict[str, float]], penetrating: int, lagging: list
         "newton_max": int(max(report["newton"] for report in reports)),
         "unconverged": int(total("unconverged")),
         "unconverged_locks": [],
+        "stalled": int(total("stalled")),
         "line_search_cuts": int(total("cuts")),
         "residual": max(report["residual"] for report in reports),
         "contact": {

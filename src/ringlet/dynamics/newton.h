@@ -28,6 +28,7 @@ template <class T> struct NewtonResult {
     T iterations; // used, per lane
     T cuts;       // times a step was halved
     T residual;   // largest unknown of the last full step [m]
+    T stalled;    // 1 where the lane has not moved, although it has not converged
 };
 
 // Working memory: `direction` has Matrix::padding more entries behind its last.
@@ -43,7 +44,7 @@ template <class T, class Objective>
     const int size = objective.size();
 
     typename Objective::Matrix hessian(memory.band, size);
-    NewtonResult<T> result{objective.evaluate(x), T{}, T{}, T{}};
+    NewtonResult<T> result{objective.evaluate(x), T{}, T{}, T{}, T{}};
     T active = one; // 1 while a lane still moves, else 0
     T curved = one;
 
@@ -78,7 +79,9 @@ template <class T, class Objective>
             step *= select(refused > 0.0, shorter, one);
         }
         for (int i = 0; i < size; ++i) x[i] = select(step > 0.0, memory.trial[i], x[i]);
-        active = select(converged, T{}, select(step > 0.0, active, T{})); // a lane without a decreasing step stays
+        if (iteration == 0) result.stalled = select(converged | (step > 0.0), T{}, active);
+        // A lane without a decreasing step stays.
+        active = select(converged, T{}, select(step > 0.0, active, T{}));
         if (!any(active > 0.0)) break;
     }
     return result;

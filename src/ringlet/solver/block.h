@@ -24,6 +24,7 @@ struct SolverEffort {
     double iterations = 0, cuts = 0; // of Newton's method; of the step length
     double residual = 0;             // largest coordinate of the last search direction [m]
     bool converged = true;
+    std::vector<unsigned char> stalled; // per object: not at rest in the step, and yet not moved
 };
 
 // A system of a block that is independent but for contacts: a strand, a cloth. It has an energy and a step length of its own.

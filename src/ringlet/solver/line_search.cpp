@@ -77,7 +77,7 @@ LineSearchResult line_search(Objective &objective, const ReachablePairs &pairs, 
                              const std::vector<unsigned char> &accepted, AlignedVector &x) {
     const BlockSet &blocks = objective.blocks;
     const int objects = objective.table.objects;
-    LineSearchResult result{false, 0, std::vector<double>(objects, 1.0)};
+    LineSearchResult result{0, std::vector<double>(objects, 1.0)};
     std::vector<double> &step = result.step;
     std::vector<double> start, energy, bound(objects), traveled(objects);
     objective.energies_at_linearisation(start);
@@ -109,7 +109,6 @@ LineSearchResult line_search(Objective &objective, const ReachablePairs &pairs, 
         }
         if (any) continue;
         std::swap(x, trial);
-        for (int o = 0; o < objects; ++o) result.moved |= blocks.is_active(o) && step[o] > 0.0;
         return result;
     }
 }

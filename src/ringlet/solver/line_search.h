@@ -8,9 +8,8 @@
 namespace ringlet {
 
 struct LineSearchResult {
-    bool moved = false;       // false: no object found a step on which the energy falls
     int cuts = 0;             // of step lengths
-    std::vector<double> step; // per object
+    std::vector<double> step; // per object; 0: it found none on which the energy falls
 };
 
 // Moves x along the path as far as each object may. One that touches nothing dynamic halves its step, later quarters it, until

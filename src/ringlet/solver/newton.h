@@ -36,6 +36,8 @@ private:
         bool leads_into_contact;
         SearchPath path;
         std::vector<double> step; // per object: the fraction of the direction that is tried
+        // Per object: the search has found no step of descent for its cluster, which takes the direction itself next.
+        std::vector<unsigned char> cautious;
         PlannedMove move;
         std::vector<Vec3> full_step; // of the last iteration of all objects: where its search direction leads
     };
@@ -46,7 +48,10 @@ private:
     void choose_path(const AlignedVector &x, Iteration &iteration) const;
     LineSearchResult search(const Iteration &iteration, SceneReport &report, AlignedVector &x);
     void set_full_step(Iteration &iteration) const;
-    void measure_left(View<Vec3> initial, const Iteration &iteration, SceneReport &report) const;
+    void measure_left(View<Vec3> initial, const Iteration &iteration, View<unsigned char> stalled, SceneReport &report) const;
+    void mark_cautious(const LineSearchResult &found, bool extra, Iteration &iteration);
+    std::vector<unsigned char> stalled(double tolerance) const;
+    bool activate_unfinished(double tolerance, Refinement &refinement); // false: nothing is
     void accept(const LineSearchResult &found, SceneReport &report, Iteration &iteration, AlignedVector &x);
 
     VertexTable &table_;
@@ -54,7 +59,9 @@ private:
     LinearSystem &system_;
     Configuration &configuration_;
     ContactStiffness &stiffness_;
-    std::vector<double> largest_; // per object: largest coordinate of its last search direction [m]
+    std::vector<double> largest_;      // per object: largest coordinate of its last search direction [m]
+    std::vector<unsigned char> moved_; // per object: in an iteration of this step
+    std::vector<unsigned char> stuck_; // per object: nothing has helped it to move
 };
 
 } // namespace ringlet

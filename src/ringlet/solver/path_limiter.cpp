@@ -36,46 +36,47 @@ void set_end_of_path(const BlockSet &blocks, const VertexTable &table, View<Vec3
     }
 }
 
-// The path of an object that was limited at some vertices becomes straight, each vertex with the fraction that it has left.
-void take_limited(const BlockSet &blocks, const VertexTable &table, View<Vec3> now, View<Vec3> wanted, View<Vec3> to,
-                  SearchPath &path) {
-    std::vector<unsigned char> limited(table.objects, 0);
+// The path of an object that was limited ends there. Each vertex goes on bending as far as it is left to. A chord of the curve
+// would compress the edges that the curve turns, and stretch is too stiff for a step along it to be one of descent.
+void end_where_limited(const BlockSet &blocks, const VertexTable &table, View<Vec3> now, View<Vec3> wanted, View<Vec3> to,
+                       SearchPath &path) {
     blocks.for_active_objects([&](const BlockObject &object) {
-        limited[object.number] = !std::equal(to.begin() + object.first, to.begin() + object.end, wanted.begin() + object.first);
-        for (int v = object.first; limited[object.number] && v < object.end; ++v) {
-            if (!table.mesh.moves[v]) continue;
-            const double left = to[v] == wanted[v] ? 1.0 : fraction_of(now[v], wanted[v], to[v]);
+        for (int v = object.first; v < object.end; ++v) {
+            if (!table.mesh.moves[v] || to[v] == wanted[v]) continue;
+            const double left = fraction_of(now[v], wanted[v], to[v]);
             const auto [first, stride] = blocks.slot(v);
             for (int k = 0; k < blocks.dofs(v); ++k) {
                 const size_t i = size_t(first) + size_t(k) * stride;
-                path.straight[i] = left * (path.straight[i] + path.bend[i]);
+                path.straight[i] = left * (path.straight[i] + (1.0 - left) * path.bend[i]);
+                path.bend[i] *= left * left;
             }
         }
     });
-    straighten(blocks, limited, path);
 }
 
 } // namespace
 
-PlannedMove limit_path(const Objective &objective, Configuration &configuration, const AlignedVector &x, bool whole, bool lasts,
-                       SearchPath &path, Refinement &refinement, SceneReport &report) {
+PlannedMove limit_path(const Objective &objective, Configuration &configuration, const AlignedVector &x,
+                       const PathLimits &limits, SearchPath &path, Refinement &refinement, SceneReport &report) {
     const VertexTable &table = objective.table;
     const BlockSet &blocks = objective.blocks;
+    const std::vector<int> &cluster = objective.couplings.clusters();
     const std::vector<Vec3> &now = configuration.positions;
     AlignedVector end = x.copy();
     std::vector<Vec3> wanted = now;
     PlannedMove move{{}, now};
     set_end_of_path(blocks, table, now, x, path, blocks.active_objects(), end, wanted, move.apex);
     move.to = wanted;
-    configuration.limit(move, {.whole = true, .lasts = lasts}, report);
+    configuration.limit(move, {.whole = true, .lasts = limits.lasts}, report);
 
     std::vector<double> left = fractions_left(blocks, now, wanted, move.to);
     std::vector<unsigned char> straight(table.objects, 0), limited(table.objects, 0), changed(table.count(), 0);
     for (int object = 0; object < table.objects; ++object) {
-        limited[object] = left[object] < 1.0;
-        straight[object] = left[object] < solver_settings::near_impact;
+        straight[object] = left[object] < solver_settings::near_impact && !limits.uniform[object];
         if (straight[object]) left[object] = solver_settings::straight_part;
     }
+    share_least(cluster, limits.uniform, left);
+    for (int object = 0; object < table.objects; ++object) limited[object] = left[object] < 1.0;
     if (std::count(limited.begin(), limited.end(), 1) == 0) { // one pass is enough
         refinement.add_move(now, wanted, move.to);
         return move;
@@ -87,10 +88,10 @@ PlannedMove limit_path(const Objective &objective, Configuration &configuration,
 #pragma omp parallel for schedule(static)
     for (int v = 0; v < table.dynamic_vertices; ++v)
         if (table.mesh.moves[v] && limited[table.mesh.object[v]]) changed[v] = 1, move.to[v] = wanted[v];
-    configuration.limit_again(move, whole, changed, report);
+    configuration.limit_again(move, limits.whole, changed, report);
     refinement.add_move(now, wanted, move.to);
     refinement.add_steps(left);
-    take_limited(blocks, table, now, wanted, move.to, path);
+    end_where_limited(blocks, table, now, wanted, move.to, path);
     return move;
 }
 

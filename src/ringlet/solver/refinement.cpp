@@ -42,9 +42,10 @@ bool Refinement::all_moved_fully() const {
                        [](double fraction) { return fraction > 1.0 - solver_settings::move_rounding; });
 }
 
-bool Refinement::activate_stretched(BlockSet &blocks, View<Vec3> now) {
+bool Refinement::activate_unfinished(BlockSet &blocks, View<Vec3> now, const std::vector<unsigned char> &stay) {
     for (int object = 0; object < objective_.table.objects; ++object)
-        limited_[object] = limited_[object] && blocks.of_object(object).is_stretched(blocks.lane_of(object), now);
+        limited_[object] =
+            stay[object] || (limited_[object] && blocks.of_object(object).is_stretched(blocks.lane_of(object), now));
     std::vector<unsigned char> active = limited_;
     for (int ring = 0; ring < solver_settings::refined_rings; ++ring) active = objective_.with_touched(active);
     blocks.activate(std::move(active));

@@ -18,9 +18,9 @@ public:
 
     bool all_moved_fully() const; // in the last move
 
-    // Activates the objects that were limited and are stretched, those that touch them and so on for some rings, so that there
-    // is something to give way. False: there are none.
-    bool activate_stretched(BlockSet &blocks, View<Vec3> now);
+    // Activates the objects that were limited and are stretched or that `stay`, those that touch them and so on for some rings,
+    // so that there is something to give way. False: there are none.
+    bool activate_unfinished(BlockSet &blocks, View<Vec3> now, const std::vector<unsigned char> &stay);
 
 private:
     const Objective &objective_;

@@ -7,6 +7,7 @@ namespace ringlet {
 
 struct SceneReport {
     double newton = 0, cuts = 0, residual = 0, unconverged = 0;
+    double stalled = 0; // objects that are not at rest in the step, and yet have not moved
     double linear_iterations = 0, linear_residual = 0;
     double candidates = 0, contacts = 0;      // candidate pairs, and contacts
     double closest = 0;                       // smallest gap of a contact at the end [m]
@@ -19,10 +20,10 @@ struct SceneReport {
 inline constexpr int scene_report_columns = sizeof(SceneReport) / sizeof(double);
 
 inline constexpr const char *scene_report_names[] = {
-    "newton",          "cuts",       "residual",    "unconverged", "linear_iterations",
-    "linear_residual", "candidates", "contacts",    "closest",     "violations",
-    "zone_vertices",   "moved",      "left",        "lag",         "time_pairs",
-    "time_assemble",   "time_solve", "time_search", "time_filter"};
+    "newton",          "cuts",       "residual", "unconverged", "stalled",       "linear_iterations",
+    "linear_residual", "candidates", "contacts", "closest",     "violations",    "zone_vertices",
+    "moved",           "left",       "lag",      "time_pairs",  "time_assemble", "time_solve",
+    "time_search",     "time_filter"};
 static_assert(sizeof(scene_report_names) / sizeof(*scene_report_names) == scene_report_columns);
 
 class Stopwatch {

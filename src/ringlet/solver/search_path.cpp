@@ -1,5 +1,6 @@
 #include "ringlet/solver/search_path.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace ringlet {
@@ -28,6 +29,13 @@ std::vector<double> max_step(const BlockSet &blocks, const AlignedVector &x, con
         blocks.from_lanes(b, of_lanes, steps);
     });
     return steps;
+}
+
+void share_least(const std::vector<int> &cluster, const std::vector<unsigned char> &objects, std::vector<double> &t) {
+    std::vector<double> least(t.size(), 1.0);
+    for (size_t o = 0; o < t.size(); ++o) least[cluster[o]] = std::min(least[cluster[o]], t[o]);
+    for (size_t o = 0; o < t.size(); ++o)
+        if (objects[o]) t[o] = least[cluster[o]];
 }
 
 void shorten(const BlockSet &blocks, const std::vector<double> &t, SearchPath &path) {

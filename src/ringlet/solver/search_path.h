@@ -20,6 +20,9 @@ void measure_direction(const BlockSet &blocks, AlignedVector &direction, std::ve
 // Per object, the largest fraction of its direction that the linearisation at x is good for.
 std::vector<double> max_step(const BlockSet &blocks, const AlignedVector &x, const AlignedVector &direction);
 
+// Gives marked objects the least fraction of their cluster; clusters are named by their first objects.
+void share_least(const std::vector<int> &cluster, const std::vector<unsigned char> &objects, std::vector<double> &t);
+
 // Shortens the path of each object to the fraction t of it.
 void shorten(const BlockSet &blocks, const std::vector<double> &t, SearchPath &path);
 

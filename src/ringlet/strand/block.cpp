@@ -159,6 +159,7 @@ bool StrandBlock::commit(const double *x, double, const SolverEffort &effort) {
     StrandReport reports[max_lanes];
     phases().end(x, of_strands, reports);
     std::copy_n(reports, reports_.size(), reports_.begin());
+    for (size_t lane = 0; lane < reports_.size(); ++lane) reports_[lane].stalled = effort.stalled[objects_[lane].number];
     return std::none_of(reports_.begin(), reports_.end(), [](const StrandReport &report) { return report.nan > 0; });
 }
 

@@ -40,6 +40,7 @@ public:
         for (int k = 0; k < strands_.gather.strands(); ++k) {
             const StrandLane &strand = strands_.gather.lane(k);
             reports[k] = accept(strand, {result.iterations[k], result.cuts[k], result.residual[k]});
+            reports[k].stalled = result.stalled[k];
             if (reports[k].unconverged > 0 && is_isolated(strands_, strand)) limit_energy(strands_, strand, reports[k]);
         }
     }

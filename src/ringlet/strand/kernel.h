@@ -59,6 +59,7 @@ struct StrandReport {
     double cuts;                                   // line search halvings
     double residual;                               // largest coordinate of the last Newton step [m]
     double unconverged;                            // 1 where iterations ran out
+    double stalled;                                // 1 where it is not at rest in the step, and yet has not moved
     double stretch, bend, twist, gravity, kinetic; // energies at the end [J]
     double max_stretch;                            // largest |l/l̄ − 1| of free edges
     double flips;                                  // vertices whose sign changed
@@ -68,8 +69,8 @@ struct StrandReport {
     double nan;                                    // 1 where a position is not finite (the strand then keeps its last state)
 };
 inline constexpr const char *strand_report_names[] = {
-    "newton",  "cuts",        "residual", "unconverged",     "stretch",      "bend",    "twist", "gravity",
-    "kinetic", "max_stretch", "flips",    "winding_changes", "too_straight", "clamped", "nan"};
+    "newton",  "cuts",    "residual",    "unconverged", "stalled",         "stretch",      "bend",    "twist",
+    "gravity", "kinetic", "max_stretch", "flips",       "winding_changes", "too_straight", "clamped", "nan"};
 inline constexpr int strand_report_columns = sizeof(StrandReport) / sizeof(double);
 static_assert(sizeof(strand_report_names) / sizeof(*strand_report_names) == strand_report_columns);
 
