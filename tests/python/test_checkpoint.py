@@ -1,6 +1,7 @@
 """Checkpoints: a killed run resumes to bit-identical frames; damaged files are detected."""
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -9,6 +10,7 @@ import time
 import numpy as np
 import pytest
 from commands import edit
+from kills import kills
 from ringlet.cli.app import app
 from ringlet.io import open_cache, read_cache, read_touches
 from ringlet.sim import checkpoint
@@ -117,22 +119,91 @@ def test_a_run_resumes_after_a_full_disk(folder, monkeypatch):
     assert (read_cache(folder / "cache.usdc").points == expected).all()
 
 
-@pytest.mark.parametrize("damage", ["cut", "changed", "frame"])
+@pytest.mark.parametrize("damage", ["cut", "changed", "frame", "missing"])
 def test_a_damaged_checkpoint_is_detected_and_the_previous_one_used(folder, monkeypatch, damage):
     shot, part = ringlet.read_shot(folder / "small.shot.toml"), folder / "cache.usdc.part"
     expected = ringlet.simulate(shot).points
     interrupted(folder, monkeypatch, 25)
-    name = "step.000015" if damage == "frame" else "memory.000020"
+    name = "step.000015" if damage in ("frame", "missing") else "memory.000020"
     content = (part / name).read_bytes()
     middle = len(content) // 2
     flipped = content[:middle] + bytes([content[middle] ^ 1]) + content[middle + 1 :]
-    (part / name).write_bytes(content[:middle] if damage == "cut" else flipped)
-    with pytest.raises(checkpoint.DamagedError):
-        checkpoint.read(part / name)
+    if damage == "missing":
+        (part / name).unlink()
+    else:
+        (part / name).write_bytes(content[:middle] if damage == "cut" else flipped)
+        with pytest.raises(checkpoint.DamagedError):
+            checkpoint.read(part / name)
     steps = []
     cache = ringlet.simulate(shot, checkpoints=part, resume=True, progress=lambda *step: steps.append(step))
     assert next(done for name, done, _ in steps if name == "sim") == 10
     assert (cache.points == expected).all()
+
+
+@pytest.fixture
+def ended(folder, monkeypatch):
+    """The example after a run of 12 frames whose cache is written, with its checkpoints in ``left``."""
+    edit(folder / "small.shot.toml", "frames = [1, 40]", "frames = [1, 12]")
+    monkeypatch.setattr(checkpoint, "VERTICES", 3 * 8 * 40)
+    with monkeypatch.context() as patch:
+        patch.setattr("ringlet.sim.discard", lambda folder: None)
+        assert sim(folder).exit_code == 0
+    (folder / "cache.usdc.part").rename(folder / "left")
+    return folder
+
+
+def end(part):
+    with ringlet.hold_checkpoints(part):
+        ringlet.discard_checkpoints(part)
+
+
+def test_a_kill_while_checkpoints_are_removed_leaves_what_its_own_run_alone_resumes(ended):
+    part, found = ended / "cache.usdc.part", []
+    inputs = checkpoint.left_inputs(ended / "left")
+    shutil.copytree(ended / "left", part)
+    for _ in kills(lambda: end(part)):
+        there = part.exists() and {path.name for path in part.iterdir()}
+        assert not there or there <= {"held"} or "made_from" in there
+        for run in (inputs, {**inputs, "the first frame": 9}) if there else ():
+            shutil.copytree(part, ended / "copy")
+            try:
+                state = checkpoint.Checkpoints(ended / "copy", run).begin(resume=True)
+            except ringlet.UserError as error:
+                assert run is not inputs and "the first frame was 1" in str(error)
+            else:
+                found += [state[0]] if state else []
+                assert state is None or run is inputs
+            shutil.rmtree(ended / "copy")
+        shutil.rmtree(part, ignore_errors=True)
+        shutil.copytree(ended / "left", part)
+    assert not part.exists() and sorted(found, reverse=True) == found and {*found} == {9, 6}
+
+
+@pytest.mark.parametrize("has_cache", [True, False])
+def test_a_run_killed_while_its_checkpoints_are_removed_is_resumed(ended, has_cache):
+    cache, part = ended / "cache.usdc", ended / "cache.usdc.part"
+    expected = read_cache(cache).points
+    written = cache.stat().st_mtime_ns
+    if not has_cache:
+        cache.unlink()
+    shutil.copytree(ended / "left", part)
+    next(call for call in kills(lambda: end(part)) if call == 5)
+    assert 0 < len([*part.glob("step.*")]) < 12
+    result = sim(ended, "--resume")
+    assert result.exit_code == 0 and not part.exists(), result.output
+    assert (read_cache(cache).points == expected).all()
+    assert (cache.stat().st_mtime_ns == written) == has_cache  # a cache that is whole is not made again
+
+
+def test_resume_simulates_what_a_whole_cache_is_not_made_from(ended):
+    cache = ended / "cache.usdc"
+    written = [cache.stat().st_mtime_ns]
+    edit(ended / "small.shot.toml", "frames = [1, 12]", "frames = [1, 10]")
+    for _ in range(2):
+        result = sim(ended, "--resume", "--json")
+        assert result.exit_code == 0 and '"frames": 10' in result.stdout, result.output
+        written.append(cache.stat().st_mtime_ns)
+    assert written[0] < written[1] == written[2] and len(read_cache(cache).frames) == 10
 
 
 def test_checkpoints_of_another_run_are_not_resumed(folder, monkeypatch):

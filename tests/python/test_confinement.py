@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 import os
+import stat
 from pathlib import Path
 
 import pytest
 from commands import refused, run
+from kills import kills
 from pxr import Sdf
 from ringlet.data.files import replacing
 from small_example import write_example
@@ -62,6 +64,61 @@ def test_a_link_in_place_of_the_output_is_replaced_and_not_followed(tmp_path):
         temporary.write_text("new")
     assert (tmp_path / "precious").read_text() == "precious"
     assert not (tmp_path / "out").is_symlink() and (tmp_path / "out").read_text() == "new"
+
+
+def test_a_file_that_is_upgraded_keeps_its_mode_and_the_link_to_it(tmp_path):
+    recipe, link = tmp_path / "kept/a.recipe.toml", tmp_path / "b.recipe.toml"
+    recipe.parent.mkdir()
+    recipe.write_text('ringlet = 1\nunit = "m"\n[scalp]\nfile = "head.usdc"\n')
+    recipe.chmod(0o600)
+    link.symlink_to("kept/a.recipe.toml")
+    assert run("upgrade", link).exit_code == 0
+    assert link.is_symlink() and recipe.read_text().startswith("ringlet = 2\n")
+    assert stat.S_IMODE(recipe.stat().st_mode) == 0o600
+    assert names_below(tmp_path) == ["b.recipe.toml", "kept", "kept/a.recipe.toml"]
+
+
+@pytest.mark.parametrize("mode", [0o600, 0o640, 0o755, 0o444])
+def test_a_file_that_is_replaced_keeps_its_mode_and_is_private_while_it_is_written(tmp_path, mode):
+    (tmp_path / "out.txt").write_text("old")
+    (tmp_path / "out.txt").chmod(mode)
+    with replacing(tmp_path / "out.txt") as temporary:
+        assert stat.S_IMODE(temporary.stat().st_mode) == 0o600
+        temporary.write_text("new")
+    assert stat.S_IMODE((tmp_path / "out.txt").stat().st_mode) == mode
+
+
+def test_a_kill_at_any_call_leaves_the_old_file_or_the_new_one(tmp_path):
+    path, found = tmp_path / "out.txt", []
+
+    def replace():
+        with replacing(path) as temporary:
+            temporary.write_text("new")
+
+    path.write_text("old")
+    path.chmod(0o600)
+    for _ in kills(replace):
+        found.append((path.read_text(), stat.S_IMODE(path.stat().st_mode)))
+    assert {*found} == {("old", 0o600), ("new", 0o600)} and len(found) >= 5
+    assert path.read_text() == "new" and stat.S_IMODE(path.stat().st_mode) == 0o600
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root gives files away")
+def test_a_file_that_root_replaces_keeps_its_owner(project):
+    for path in (groom := project / "groom.usdc", recipe := project / "old.recipe.toml"):
+        path.write_text('ringlet = 1\n[scalp]\nfile = "head.usda"\n')
+        os.chown(path, 12345, 23456)
+    assert run("upgrade", recipe).exit_code == 0
+    assert run("groom", project / "small.recipe.toml", "-o", groom).exit_code == 0
+    assert {(path.stat().st_uid, path.stat().st_gid) for path in (groom, recipe)} == {(12345, 23456)}
+
+
+def test_a_pipe_in_place_of_an_output_is_refused_and_stays(project):
+    os.mkfifo(project / "groom.usdc")
+    refused(run("groom", project / "small.recipe.toml", "-o", project / "groom.usdc"), "a pipe; choose another name")
+    with pytest.raises(ringlet.UserError, match="a pipe; choose another name"), replacing(project / "groom.usdc"):
+        pass
+    assert (project / "groom.usdc").is_fifo()
 
 
 def test_a_link_in_place_of_the_temporary_file_is_not_followed(tmp_path):

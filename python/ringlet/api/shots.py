@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,6 +13,7 @@ import numpy as np
 from ringlet.api.grooms import load_groom
 from ringlet.api.progress import OnFrame, Progress
 from ringlet.data.curves import Curves
+from ringlet.data.digest import digest
 from ringlet.data.errors import UserError
 from ringlet.data.files import check_place, same_place, within
 from ringlet.data.reads import recorded, unrecorded
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from ringlet.sim import Checkpoints, Garment, Motion, Obstacle
 
 __all__ = [
+    "discard_checkpoints",
     "hold_checkpoints",
     "loft",
     "open_cache",
@@ -110,6 +112,7 @@ def write_simulation(
 
     under:       the USD file that ``write_groom`` made of the groom, the layer below the cache
     checkpoints: the folder of the frames, which are written to ``path`` when all are done
+    resume:      continue an interrupted run, to the same bits; a cache of it that is whole stays as it is
     touches:     keep the contacts of every frame there too, for ``write_touches``
     on_frame:    called with each frame's number and statistics, as soon as it is done
     on_warning:  called before the first frame with each sentence about settings or motion that make frames take long
@@ -122,28 +125,46 @@ def write_simulation(
     with recorded() as read:
         contents = _contents(shot, groom, allow_stale, frames)
         check_place(path)
-    kept = _checkpoints(checkpoints, groom, sim.run_inputs(shot, groom, read, frames))
+    inputs = sim.run_inputs(shot, groom, read, frames)
+    kept, made_from = _checkpoints(checkpoints, groom, inputs), digest(inputs, frames or shot.frames)
     first, last = frames or shot.frames
     _warn_of_work(shot, groom, contents, (first, last), on_warning)
     motion = sim.Motion(shot, groom, first=first, **contents)
+    record = SimulationRecord(
+        start=motion.start,
+        cloths={garment.name: len(garment.cloth.positions) for garment in motion.garments},
+        notes=_untouched(shot, groom),
+    )
+    if resume and not touches and (whole := _whole(path, made_from)):
+        record.frames, record.statistics = whole
+        return record
     for frame in sim.play(motion, last, touches=touches, progress=progress, checkpoints=kept, resume=resume):
         if on_frame:
             on_frame(frame.number, frame.statistics)
     steps = shot.preroll + last - first + 1
-    record = SimulationRecord(
-        start=motion.start,
-        cloths={garment.name: len(garment.cloth.positions) for garment in motion.garments},
-        touches=sim.StoredTouches(motion, kept, steps) if touches else (),
-        notes=_untouched(shot, groom),
-    )
+    if touches:
+        record.touches = sim.StoredTouches(motion, kept, steps)
     with io.CacheWriter(path, under, io.read_space(Path(under)), motion.cloths(0), groom.variant) as writer:
-        writer.start = motion.start
+        writer.start, writer.made_from = motion.start, made_from
         for frame in sim.replay(motion, kept, steps):
             record.frames.append(frame.number)
             record.statistics.append(frame.statistics)
             around = contents["clip"].at(frame.number)
             writer.add(frame.number, frame.points, frame.statistics, frame.cloths, around=around)
     return record
+
+
+def _whole(path: Path | str, made_from: str) -> tuple[list[float], list[dict[str, Any]]] | None:
+    """Frames and statistics of a cache that is made from the same; None for another one, and without one."""
+    from ringlet import io
+
+    if not Path(path).exists():
+        return None
+    try:
+        with unrecorded(), io.open_cache(path) as cache:
+            return (cache.frames.tolist(), cache.statistics) if cache.made_from == made_from else None
+    except UserError:
+        return None
 
 
 def hold_checkpoints(folder: Path | str) -> AbstractContextManager[int]:
@@ -158,10 +179,19 @@ def hold_checkpoints(folder: Path | str) -> AbstractContextManager[int]:
         with ringlet.hold_checkpoints("cache.usdc.part"):
             ringlet.write_groom(groom, "groom.usdc")
             ringlet.write_simulation(shot, groom, "groom.usdc", "cache.usdc", checkpoints="cache.usdc.part")
+            ringlet.discard_checkpoints("cache.usdc.part")
     """
     from ringlet import sim
 
     return sim.locked_folder(Path(folder))
+
+
+def discard_checkpoints(folder: Path | str) -> None:
+    """Removes the checkpoints of a run whose result has been written; a kill meanwhile leaves what can be resumed."""
+    from ringlet import sim
+
+    with suppress(OSError):  # the result is there
+        sim.discard(Path(folder))
 
 
 def run_inputs(shot: Shot, groom: Groom, *, frames: tuple[int, int] | None = None) -> dict[str, Any]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -165,4 +164,4 @@ def _checkpoint_folder(output: Path, resume: bool) -> Iterator[Path]:
                     f"{folder} keeps what is done: the same command with --resume goes on from there", file=sys.stderr
                 )
             raise
-        shutil.rmtree(folder, ignore_errors=True)
+        ringlet.discard_checkpoints(folder)

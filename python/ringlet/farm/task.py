@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
 import socket
 import time
 import traceback
@@ -116,6 +115,8 @@ def _run(task: Task, options: TaskOptions, progress: Progress | None) -> Result:
         log(f"failed:\n{traceback.format_exc()}")
         raise
     write_result(task.folder, result)
+    if result.state == "done":
+        api.discard_checkpoints(task.folder / PART)
     log(f"ends after {time.perf_counter() - begin:.1f} s: {result.state}")
     return result
 
@@ -188,7 +189,6 @@ def _simulate(task: Task, options: TaskOptions, log: Log, progress: Progress) ->
     if options.picture:
         log(f"draws frame {frame}")
         _draw(task.folder, groom, groom_file, cache, frame)
-    shutil.rmtree(part, ignore_errors=True)
     series = {name: [float(frame.get(name, 0.0)) for frame in simulated.statistics] for name in SERIES}
     return Result(task.settings, "done", "", made_from, round(seconds, 3), numbers, series, task.order)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -38,7 +37,7 @@ def simulate(request: requests.Simulate, progress: Progress, warn: Warn) -> dict
             progress=progress,
             on_warning=warn,
         )
-        shutil.rmtree(part, ignore_errors=True)
+        api.discard_checkpoints(part)
     verdict = judge(record.statistics)
     notes = [*start_warnings(record.start), *record.notes, *(verdict.lines() if verdict.findings else [])]
     return {"path": str(cache), "frames": record.frames, "notes": notes, "locks": len(groom.locks)}

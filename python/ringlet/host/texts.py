@@ -41,7 +41,7 @@ def apply(kind: str, text: Text, folder: Path) -> Applied:
     kept = document.text
     for change in text.overlay:
         _make(document, change)
-    with replacing(path, update=True) as aside:
+    with replacing(path) as aside:
         aside.write_text(document.text, encoding="utf-8")
     return Applied(kept, document.model)
 

@@ -1,6 +1,6 @@
 """The simulation of a shot: strands, cloth and bodies in motion and in contact, frame by frame."""
 
-from ringlet.sim.checkpoint import Checkpoints, frames_between, left_inputs, locked_folder
+from ringlet.sim.checkpoint import Checkpoints, discard, frames_between, left_inputs, locked_folder
 from ringlet.sim.cloth import Cloth
 from ringlet.sim.garment import Garment
 from ringlet.sim.motion import Motion
@@ -23,6 +23,7 @@ __all__ = [
     "Strands",
     "changed_input",
     "check_frames",
+    "discard",
     "frames_between",
     "heavy_work",
     "left_inputs",

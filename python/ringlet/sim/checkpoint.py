@@ -60,15 +60,14 @@ class Checkpoints:
     def begin(self, resume: bool) -> tuple[int, dict[str, NDArray[Any]]] | None:
         """The number of steps that are done and the state after them; None for a new run.
 
-        Without ``resume`` the folder is emptied. Raises UserError where it is of another run.
+        Without ``resume``, and where nothing says what its files are of, the folder is emptied. Raises UserError where
+        it is of another run.
         """
         self._lock()
-        if not resume:
-            for path in self.folder.iterdir():
-                if path.name != LOCK_FILE:
-                    path.unlink()
-        before = left_inputs(self.folder)
-        if before is not None and (change := changed_input(before, self.inputs)):
+        before = left_inputs(self.folder) if resume else None
+        if before is None:
+            discard(self.folder)
+        elif change := changed_input(before, self.inputs):
             raise UserError(
                 f"{self.folder}: was left by another run: {change}; put it back, or run without --resume to start over"
             )
@@ -110,10 +109,19 @@ class Checkpoints:
 
     def _has(self, step: int) -> bool:
         try:
-            read(self._frame(step))
-        except (DamagedError, OSError):
+            return self._frame(step).exists() and bool(read(self._frame(step)))
+        except DamagedError:
             return False
-        return True
+
+
+def discard(folder: Path) -> None:
+    """Removes the checkpoints in a folder: the last first, and the inputs of their run at the end.
+
+    So a run of the same inputs resumes from what a kill leaves, and no other does.
+    """
+    paths = [path for path in folder.iterdir() if path.name != LOCK_FILE]
+    for path in sorted(paths, key=lambda path: (path.name != INPUTS, path.suffix), reverse=True):
+        path.unlink(missing_ok=True)
 
 
 def left_inputs(folder: Path) -> Inputs | None:

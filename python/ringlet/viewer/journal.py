@@ -66,7 +66,7 @@ class Journal:
         """Writes a state; nothing where there is nothing to recover. An unwritable folder has no journal."""
         if not entry.documents and not self._written:
             return
-        with suppress(UserError), replacing(self.path, update=True) as aside:
+        with suppress(UserError), replacing(self.path) as aside:
             aside.write_text(entry.model_dump_json(), encoding="utf-8")
             self._written = True
 

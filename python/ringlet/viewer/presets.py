@@ -150,10 +150,10 @@ class Presets:
             raise UserError(f"preset: {document.path.name} sets none of these tables; choose others")
         picture = _jpeg(message.picture) if message.picture else None
         unit = {} if document.model.unit == "cm" else {"unit": document.model.unit}
-        with replacing(path, update=True) as aside:
+        with replacing(path) as aside:
             aside.write_text(to_toml({"ringlet": FORMAT, **unit, **kept}), encoding="utf-8")
         if picture is not None:
-            with replacing(_own(path).picture, update=True) as aside:
+            with replacing(_own(path).picture) as aside:
                 aside.write_bytes(picture)
         return path
 

@@ -73,6 +73,7 @@ class CacheFile:
     ids:        ids of the locks, shape (count,)
     statistics: report of the solver, one dict per frame
     start:      initial penetrations
+    made_from:  digest of all that the simulation depends on; empty where it is not known
 
     Raises UserError for a file without simulated frames.
     """
@@ -97,6 +98,7 @@ class CacheFile:
 
         self.statistics: list[dict[str, Any]] = entry("statistics", "[]")
         self.start: dict[str, Any] = entry("start", "{}")
+        self.made_from = str(next((data["made_from"] for data in metadata if "made_from" in data), ""))
         self._cloths: list[dict[str, Any]] = entry("cloths", "[]")
         self._meshes: list[tuple[Usd.Prim, Mesh]] | None = None
 
@@ -197,10 +199,11 @@ class CacheWriter(StreamWriter):
 
     The file appears at ``path`` when the block ends; an error leaves ``path`` unchanged.
 
-    space:   unit, up-axis and rate of the groom file
-    cloths:  names and sources of simulated cloths; their points are not used
-    variant: selected variant of the groom, if it has variants
-    start:   initial penetrations
+    space:     unit, up-axis and rate of the groom file
+    cloths:    names and sources of simulated cloths; their points are not used
+    variant:   selected variant of the groom, if it has variants
+    start:     initial penetrations
+    made_from: digest of all that the simulation depends on
     """
 
     def __init__(
@@ -213,6 +216,7 @@ class CacheWriter(StreamWriter):
     ) -> None:
         super().__init__(path, groom_path, space, variant)
         self.start: dict[str, Any] = {}
+        self.made_from = ""
         self._cloths = cloths
         self._statistics: list[dict[str, Any]] = []
         self._lagging: UsdGeom.Primvar | None = None
@@ -291,4 +295,4 @@ class CacheWriter(StreamWriter):
             name: json.dumps(values, separators=(",", ":"), default=lambda value: value.tolist())
             for name, values in (("statistics", self._statistics), ("start", self.start), ("cloths", cloths))
         }
-        self.layer.customLayerData = {"ringlet": {"version": VERSION, **metadata}}
+        self.layer.customLayerData = {"ringlet": {"version": VERSION, "made_from": self.made_from, **metadata}}
