@@ -14,7 +14,7 @@ from ringlet import api
 from ringlet.api import *
 from ringlet.data import limits
 from ringlet.data.curves import Curves
-from ringlet.data.errors import UserError
+from ringlet.data.errors import UserError, line_of
 from ringlet.data.files import check_place
 from ringlet.data.former_names import FormerNames
 from ringlet.data.mesh import Clip, Mesh
@@ -81,6 +81,7 @@ __all__ = [
     "__version__",
     "check_place",
     "limits",
+    "line_of",
 ]
 __all__ += ["recorded"]
 __all__ += api.__all__

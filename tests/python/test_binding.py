@@ -54,6 +54,35 @@ def test_a_changed_head_is_refused_and_the_groom_rebound_on_demand(copy, name):
         assert np.abs((was - was[0]) @ turn.T - (now - now[0])).max() < (1e-7 if name != "sculpted" else 1e-3)
 
 
+def test_drawn_guides_without_roots_move_with_the_locks_of_a_rebound_groom(copy):
+    before = ringlet.read_groom(made(copy))
+    stage = Usd.Stage.Open(str(copy / "groom.usdc"))
+    guides = stage.GetPrimAtPath("/groom/guides")
+    for name in ("root_triangle", "root_barycentric"):
+        assert guides.RemoveProperty(f"primvars:ringlet:{name}")
+    stage.Save()
+    change_points(copy / "head.usda", "/ball/skin", lambda p: 2.0 * p @ TURN.T + [10.0, 0, 0])
+    assert sim(copy, "--rebind").exit_code == 0
+    after = ringlet.read_groom(copy / "cache.usdc")
+    expected = 2.0 * before.guides.roots @ TURN.T + [0.1, 0, 0]
+    assert np.abs(after.guides.roots - expected).max() < 1e-6
+
+
+@pytest.mark.parametrize("damage", ["none", "negative"])
+def test_locks_with_damaged_roots_are_rebound_by_nearness(copy, damage):
+    before = ringlet.read_groom(made(copy)).locks
+    stage = Usd.Stage.Open(str(copy / "groom.usdc"))
+    locks = UsdGeom.PrimvarsAPI(stage.GetPrimAtPath("/groom/locks"))
+    if damage == "none":
+        assert locks.GetPrim().RemoveProperty("primvars:ringlet:root_triangle")
+    else:
+        locks.GetPrimvar("ringlet:root_triangle").Set(Vt.IntArray([-7] * 8))
+    stage.Save()
+    rebound = ringlet.rebind_groom(copy / "groom.usdc").locks
+    assert np.abs(rebound.points - before.points).max() < 1e-6
+    assert (rebound.curve["root_triangle"] >= 0).all()
+
+
 def test_another_mesh_of_the_same_shape_is_bound_by_nearness(copy):
     locks = ringlet.read_groom(made(copy)).locks
     stage = Usd.Stage.Open(str(copy / "head.usda"))

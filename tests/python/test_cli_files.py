@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import os
+import re
 import subprocess
 import sys
 import tracemalloc
@@ -178,3 +180,28 @@ def test_the_installed_command_writes_a_groom_and_refuses_a_missing_file(copy):
     assert failed.returncode == 2
     assert failed.stdout == ""
     assert len(failed.stderr.splitlines()) == 1
+
+
+@pytest.mark.parametrize("place", ["small.recipe.toml", "out.usdc"])
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        (os.fsdecode(b"caf\xe9"), ": has a name that is not in UTF-8; rename the file"),
+        ("n" * 300, "File name too long"),
+        (f"{'d' * 250}/" * 20 + "x", "File name too long"),
+        ("loop/a", "cannot be written (File exists)"),
+    ],
+)
+def test_a_name_that_no_file_can_have_is_refused_with_a_remedy(copy, monkeypatch, place, name, words):
+    monkeypatch.chdir(copy)
+    (copy / "loop").symlink_to("loop")
+    paths = {"small.recipe.toml": "small.recipe.toml", "out.usdc": "out.usdc", place: f"{name}{Path(place).suffix}"}
+    message = refused(run("groom", paths["small.recipe.toml"], "-o", paths["out.usdc"]))
+    assert words in message or (place == "small.recipe.toml" and "cannot be read" in message)
+    assert re.search(r"; [a-z ]+$", message) and len(message) < 1100
+
+
+def test_output_goes_to_a_terminal_without_unicode(copy):
+    command = [sys.executable, "-c", "from ringlet.cli.app import main; main()", "schema", "recipe"]
+    result = subprocess.run(command, env={**os.environ, "PYTHONIOENCODING": "ascii"}, capture_output=True)
+    assert result.returncode == 0 and json.loads(result.stdout)

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import io
+import json
 import os
+import random
 import signal
 import sys
+import threading
 import time
+from collections import Counter
 from pathlib import Path
 
 import numpy as np
 import pytest
 from ringlet.host.link import BrokenMessage, RingletProcess, read_message, write_message
+from ringlet.host.server import Server
 
 import ringlet
 
@@ -135,6 +140,102 @@ def test_a_message_comes_back_with_its_arrays():
 def test_bytes_that_are_no_message_are_refused(bytes_):
     with pytest.raises(BrokenMessage):
         read_message(io.BytesIO(bytes_))
+
+
+def answers(*lines: bytes, seconds: float = 60.0) -> list[dict]:
+    """What a server answers to bytes, in the order of its answers."""
+    stream = io.BytesIO()
+    server = Server(io.BytesIO(b"".join(lines)), stream)
+    while server.take_next():
+        pass
+    server.stop(seconds)
+    stream.seek(0)
+    found = []
+    while (message := read_message(stream)) is not None:
+        found.append(message.header)
+    return found
+
+
+HELLO = b'{"id":99,"do":"hello"}\n'
+
+
+@pytest.mark.parametrize(
+    ("line", "number", "words"),
+    [
+        (b'{"id":1e400,"do":"hello"}', None, "id is inf; must be"),
+        (b'{"id":NaN,"do":"hello"}', None, "id is nan; must be"),
+        (b'{"id":{"a":[]},"do":"hello"}', None, "must be a whole number"),
+        (b'{"id":' + b"9" * 5000 + b"}", None, "a line of JSON"),
+        (b'{"id":7,"do":1e400}', 7, "do is 'inf'; there are: hello"),
+        (b'{"id":7,"do":"look","name":"\\ud800"}', 7, "half of a UTF-16 pair; write it in UTF-8"),
+        (b'{"id":7,"do":"look","name":"\\u0000"}', 7, "a character of code 0; take it out"),
+        (b'{"id":7,"do":"edit","folder":"/","kind":"shot","text":{"name":"..","text":""}}', 7, "text.name is '..'"),
+        (b'{"id":7,"do":"hello","arrays":[["a","<f4",[1e400]]]}', 7, "a line of JSON"),
+        (b'{"id":7,"do":"hello","arrays":[["a","<f4",[99999999999]]]}', 7, "cannot be read"),
+        (b'{"id":7,"do":"hello","arrays":[["a","O",[1]]]}', 7, "cannot be read"),
+        (b'{"id":7,"do":"hello","arrays":{"a":1}}', 7, "a line of JSON"),
+        (b'{"id":7,' + b'"a":[' * 100_000, None, "a line of JSON"),
+        (b"\xff\xfe", None, "a line of JSON"),
+        (b"null", None, "a line of JSON"),
+        (b"", None, "a line of JSON"),
+    ],
+)
+def test_a_message_that_is_none_is_answered_and_the_next_one_too(line, number, words):
+    wrong, hello = answers(line + b"\n", HELLO)
+    assert wrong["kind"] == "error" and wrong["id"] == number and words in wrong["message"]
+    assert hello["kind"] == "result" and hello["id"] == 99
+
+
+def test_a_line_that_is_too_long_is_answered_and_the_next_one_too(monkeypatch):
+    monkeypatch.setattr("ringlet.host.link.MOST_HEADER", 20_000)
+    wrong, hello = answers(b'{"id":1,"do":"' + b"x" * 50_000 + b'"}\n', HELLO)
+    assert "must be a line of at most 20,000 bytes" in wrong["message"] and hello["kind"] == "result"
+
+
+def test_an_id_of_a_request_in_progress_is_refused(monkeypatch):
+    release = threading.Event()
+    monkeypatch.setattr("ringlet.host.server.texts.looks", lambda: release.wait() and [])
+    monkeypatch.setattr(Server, "stop", lambda self, patience: release.set() or [w.stop(9) for w in self._workers])
+    refused, hello = answers(HELLO, HELLO)
+    assert "id 99 is that of a request in progress" in refused["message"] and hello["kind"] == "result"
+
+
+ODD = [None, True, -1, 2.5, 10**30, float("inf"), float("nan"), "", "\ud800", "\0", "x" * 5000, [], {}, [[1]], "loop"]
+
+
+def some_message(rng: random.Random, number: int, folder: Path) -> bytes:
+    """A request, of which parts are odd."""
+    text = {"name": "a.recipe.toml", "text": rng.choice([RECIPE, "ringlet = 2", "x = " + "[" * 400, "a = 1e400"])}
+    text["changes"] = [{"set": ["curl", rng.choice(ODD)], "value": rng.choice(ODD)}] * rng.randrange(2)
+    fields = {
+        "look": {"name": "3C"},
+        "cancel": {"request": number - 1},
+        "write_curves": {"folder": str(folder), "file": "c.usdc"},
+        "edit": {"folder": str(folder), "kind": "recipe", "text": text},
+        "groom": {"folder": str(folder), "recipe": text, "hairs": 0.5},
+        "hairs": {"folder": str(folder / "loop"), "cache": "c.usdc"},
+        "simulate": {"folder": str(folder), "recipe": text, "shot": {"name": "s.shot.toml", "text": SHOT}},
+    }
+    do = rng.choice([*fields])
+    request = {"do": do, **fields[do]}
+    if rng.random() < 0.7:
+        request[rng.choice([*request, "more"])] = rng.choice([*ODD, str(folder / "file"), "n" * 300])
+    line = json.dumps({"id": number, **request}, ensure_ascii=rng.random() < 0.8).encode("utf-8", "surrogatepass")
+    if rng.random() < 0.2:
+        line = line[: rng.randrange(len(line))]
+    return line + b"\n"
+
+
+def test_every_message_of_any_content_is_answered_once_and_without_a_mistake(tmp_path):
+    (tmp_path / "loop").symlink_to("loop")
+    (tmp_path / "file").touch()
+    rng = random.Random(53)
+    lines = [some_message(rng, number, tmp_path) for number in range(100, 300)]
+    found = [one for one in answers(*lines, HELLO) if one["kind"] not in ("progress", "warning")]
+    messages = [one.get("message", "") for one in found]
+    assert not [message for message in messages if "mistake in Ringlet" in message or "\n" in message]
+    numbers = Counter(one["id"] for one in found if one["id"] is not None)
+    assert max(numbers.values()) == 1 and numbers[99] == 1 and len(numbers) > 100
 
 
 def test_a_host_grooms_its_own_mesh_in_its_own_axes(host):

@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+import json
+import random
 import struct
 import threading
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
 from pages import HOST, Page, page, serving
-from ringlet.data.errors import UserError
+from ringlet.data.errors import UserError, line_of
+from ringlet.viewer import protocol
 from ringlet.viewer.manipulator import LockManipulator
 from ringlet.viewer.project import Project
 from ringlet.viewer.protocol import VERSION
 from ringlet.viewer.server import REFUSED, WRONG, AccessControl
 from ringlet.viewer.session import Session
-from ringlet.viewer.wire import MOST
+from ringlet.viewer.wire import MOST, unpack
 from starlette.websockets import WebSocketDisconnect
 
 
@@ -45,7 +49,8 @@ def test_a_wrong_token_and_a_foreign_origin_are_refused(folder: Path):
     with serving(folder, access=access) as client:
         assert closed_with(client) == REFUSED
         assert closed_with(client, "/session?token=wrong") == REFUSED
-        assert closed_with(client, "/session?token=secret", origin="http://elsewhere.example") == REFUSED
+        for origin in ("http://elsewhere.example", "http://[", "http://[::1", "null", ""):
+            assert closed_with(client, "/session?token=secret", origin=origin) == REFUSED
         url = "/session?token=secret"
         with client.websocket_connect(url, headers={**HOST, "origin": "http://localhost"}) as socket:
             one = Page(socket)
@@ -84,6 +89,68 @@ def test_malformed_messages_are_refused_and_the_session_continues(folder: Path, 
         assert one.receive("trouble")["message"].startswith("message:")
         one.send(kind="set", changes=[[["curl", "width"], 1.5]], gesture=1)
         assert one.receive("document", dirty=True)
+
+
+@pytest.mark.parametrize("error", [RecursionError("deep"), KeyError("x"), RuntimeError("Symlink loop from 'a'")])
+def test_no_error_of_a_message_ends_the_connection(folder: Path, monkeypatch, error: Exception):
+    def fail(*_):
+        raise error
+
+    monkeypatch.setattr(LockManipulator, "isolate", fail)
+    with serving(folder) as client, page(client) as one:
+        one.send(kind="isolate", locks=[1])
+        assert one.receive_trouble()
+        one.send(kind="set", changes=[[["curl", "width"], 1.5]], gesture=1)
+        assert one.receive("document", dirty=True)
+
+
+def some_value(rng: random.Random, schema: dict, definitions: dict) -> Any:
+    """A value of a schema, sometimes another one."""
+    if rng.random() < 0.05:
+        return rng.choice([None, True, [], {}, "x", 1.5, [[]]])
+    if "$ref" in schema:
+        return some_value(rng, definitions[schema["$ref"].rpartition("/")[2]], definitions)
+    if "const" in schema or "enum" in schema:
+        return schema.get("const", rng.choice(schema.get("enum", [None])))
+    if choices := schema.get("anyOf", schema.get("oneOf")):
+        return some_value(rng, rng.choice(choices), definitions)
+    if "prefixItems" in schema:
+        return [some_value(rng, one, definitions) for one in schema["prefixItems"]]
+    texts = ["", "a", "\0", "x" * 300, "../x", "loop", "curl", "width", "shape", "é\n", ".", "small.recipe.toml"]
+    match schema.get("type"):
+        case "object":
+            given = schema.get("properties", {}).items()
+            needed = schema.get("required", ())
+            return {k: some_value(rng, v, definitions) for k, v in given if k in needed or rng.random() < 0.5}
+        case "array":
+            return [some_value(rng, schema.get("items", {}), definitions) for _ in range(rng.randrange(3))]
+        case "integer":
+            return rng.choice([0, 1, -1, 2**31, 2**64])
+        case "number":
+            return rng.choice([0, -1, 0.5, 1e308])
+        case "boolean":
+            return rng.random() < 0.5
+    return rng.choice(texts)
+
+
+def test_messages_of_any_values_are_handled_or_refused_in_one_line(folder: Path):
+    (folder / "loop").symlink_to("loop")
+    schema, rng = protocol.FROM_PAGE.json_schema(), random.Random(53)
+    kinds = [one["$ref"].rpartition("/")[2] for one in schema["oneOf"]]
+    kinds = [kind for kind in kinds if kind not in ("Hello", "Render", "Share", "Proceed")]
+    session = Session(folder / "small.recipe.toml", Project(folder))
+    one, refused = session.submit(session.join, "one").result(), 0
+    for _ in range(400):
+        kind = rng.choice(kinds)
+        text = json.dumps(some_value(rng, schema["$defs"][kind], schema["$defs"])).encode()
+        try:
+            session.submit(session.handle, one, unpack(struct.pack("<I", len(text)) + text)).result()
+        except Exception as error:
+            message = line_of(error)
+            assert message is not None and "\n" not in message, (kind, text, error)
+            refused += 1
+    assert 100 < refused < 400
+    session.stop()
 
 
 def test_invalid_edits_are_refused_in_one_line(folder: Path):

@@ -12,6 +12,7 @@ import traceback
 import warnings
 from collections.abc import Sequence
 from importlib import import_module
+from io import TextIOWrapper
 from typing import Annotated, Any
 
 import typer
@@ -64,22 +65,14 @@ class Front(TyperGroup):
                 fail("interrupted", code)
         except typer.TyperException as error:
             code = fail(f"{reason(error)}  (ringlet --help tells more)", error.exit_code)
-        except ringlet.UserError as error:
-            code = fail(str(error), 2)
         except BrokenPipeError:  # the reader of our output has seen enough
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             code = 1
         except typer.Abort:
             code = fail("interrupted", INTERRUPTED)
-        except OSError as error:
-            place = f"{error.filename}: " if error.filename else ""
-            code = fail(f"{place}{error.strerror or error}; check the place and its rights", 2)
-        except MemoryError as error:
-            code = fail(
-                f"memory ran out ({error or 'of this machine'}); ask for fewer locks, hairs, frames or pixels", 2
-            )
-        except Exception:
-            code = fail(bug(), 3)
+        except Exception as error:
+            line = ringlet.line_of(error)
+            code = fail(bug(), 3) if line is None else fail(line, 2)
         sys.exit(code)
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
@@ -178,4 +171,6 @@ for name in COMMANDS:
 
 def main() -> None:
     """Entry point of the command ``ringlet``."""
+    if isinstance(sys.stdout, TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")  # names of files may be no text
     app()

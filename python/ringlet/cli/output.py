@@ -16,7 +16,8 @@ PLAIN_WIDTH = 160  # of a table that goes to a file or to another program
 
 def print_json(value: Any) -> None:
     """One JSON value on the standard output, and nothing else."""
-    print(json.dumps(finite(value), indent=2, ensure_ascii=False, allow_nan=False))
+    has_all = (sys.stdout.encoding or "").lower() == "utf-8"
+    print(json.dumps(finite(value), indent=2, ensure_ascii=not has_all, allow_nan=False))
 
 
 def finite(value: Any) -> Any:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-MOST = 1000  # characters of a message
+MOST = 1000  # characters of a message; its end is the remedy
+SURROGATE = re.compile("[\ud800-\udfff]")  # half of a UTF-16 pair, or a byte of a name that is no text
 
 
 class Fix(NamedTuple):
@@ -32,7 +34,26 @@ class UserError(Exception):
     def __init__(self, message: str, fixes: Sequence[Fix] = ()) -> None:
         self.fixes = tuple(fixes)
         line = one_line(message)
-        super().__init__(line if len(line) <= MOST else f"{line[:MOST]}…")
+        super().__init__(line if len(line) <= MOST else f"{line[: MOST // 2]}…{line[-MOST // 2 :]}")
+
+
+def line_of(error: BaseException) -> str | None:
+    """The line on an exception that the input, the place or the memory may cause; None for a mistake in Ringlet."""
+    if isinstance(error, UserError):
+        return str(error)
+    if isinstance(error, OSError):
+        place = f"{error.filename}: " if error.filename else ""
+        return one_line(f"{place}{error.strerror or error}; check the place and its rights")
+    if isinstance(error, MemoryError):
+        reason = one_line(str(error)) or "of this machine"
+        return f"memory ran out ({reason}); ask for fewer locks, hairs, frames or pixels"
+    if isinstance(error, RecursionError):
+        return "lists or tables are in one another too deep; shorten them"
+    if isinstance(error, UnicodeEncodeError) and SURROGATE.search(error.object):
+        return one_line(f"{ascii(error.object[:200])[1:-1]}: has a name that is not in UTF-8; rename the file")
+    if isinstance(error, RuntimeError) and str(error).startswith("Symlink loop"):  # of pathlib
+        return one_line(f"{error}; check the place")
+    return None
 
 
 def one_line(message: str) -> str:

@@ -13,7 +13,7 @@ from typing import Any, ClassVar, get_args
 from pydantic import AfterValidator, BaseModel, ConfigDict, model_validator
 from pydantic_core import PydanticCustomError
 
-from ringlet.data.errors import UserError
+from ringlet.data.errors import SURROGATE, UserError
 from ringlet.data.explain import did_you_mean, explain_toml, setting_name, shown
 from ringlet.data.former_names import FormerNames, note, present
 from ringlet.data.lengths import measure
@@ -103,6 +103,15 @@ def _leaves(value: Any) -> Iterator[Any]:
             yield one
 
 
+def check_texts(value: Any, where: str) -> None:
+    """Refuses texts that no file can hold or be named by: with a character of code 0, or half of a UTF-16 pair."""
+    text = "".join(leaf for leaf in _leaves(value) if isinstance(leaf, str))
+    if "\0" in text:
+        raise UserError(f"{where}: has a text with a character of code 0; take it out")
+    if SURROGATE.search(text):
+        raise UserError(f"{where}: has a text with half of a UTF-16 pair; write it in UTF-8")
+
+
 def check_name(name: str, names: Iterable[str], where: str, what: str) -> None:
     """Refuses a name that is not among ``names``, with the nearest one that is."""
     if name not in names:
@@ -141,8 +150,7 @@ def parse_tables(text: str, where: str, kind: str) -> dict[str, Any]:
         data = tomllib.loads(text)
     except (RecursionError, ValueError) as error:
         raise explain_toml(error, where) from None
-    if "\0" in "".join(leaf for leaf in _leaves(data) if isinstance(leaf, str)):
-        raise UserError(f"{where}: has a text with a character of code 0; take it out")
+    check_texts(data, where)
     if "ringlet" not in data:
         raise UserError(f"{where}: is not a Ringlet {kind}; its first line must be 'ringlet = {FORMAT}'")
     version = data["ringlet"]

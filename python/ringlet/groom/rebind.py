@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,41 +23,64 @@ NEAR = 0.01  # farthest from a new surface that a root is bound to it [m]
 Array = NDArray[np.float64]
 
 
+class Similarity(NamedTuple):
+    """A rotation of row vectors with a scale, which takes a centre to another one."""
+
+    turn: Array
+    scale: float
+    before: Array
+    after: Array
+
+    def of(self, points: NDArray[np.floating]) -> Array:
+        """The places of points, shape (n, 3)."""
+        return self.scale * (np.asarray(points, np.float64) - self.before) @ self.turn + self.after
+
+
 def rebind(groom: Groom) -> Groom:
     """The groom on its scalp as that is now: each lock begins on its root, turned as the roots are, of the same shape.
 
-    Roots keep triangle and weights where the mesh was moved, turned, scaled or sculpted. On another mesh they go to the
-    nearest place. Raises UserError where that is farther than 1 cm.
+    Roots keep triangle and weights where the mesh was moved, turned, scaled or sculpted, and curves without roots are
+    moved as these are. On another mesh they go to the nearest place. Raises UserError where that is farther than 1 cm.
     """
-    turn = _turn(groom.locks, groom.scalp)
-    if turn is None and groom.grooms:
+    moved = _motion(groom.locks, groom.scalp)
+    if moved is None and groom.grooms:
         return with_each(groom, rebind)
-    if turn is None and groom.offsets is not None:
+    if moved is None and groom.offsets is not None:
         raise UserError(
             f"rebind: {groom.scalp.name} is another mesh than that of the adopted hair; adopt it again: "
             "ringlet adopt HAIR --head FILE"
         )
-    if turn is None:
+    if moved is None:
         locks, guides = (_on_nearest(curves, groom) for curves in (groom.locks, groom.guides))
     else:
         locks, guides = (
-            _moved(c, root_places(c, groom.scalp.points, groom.scalp.triangles), turn)
+            _moved(c, moved.of(c.roots) if (places := _places(c, groom.scalp)) is None else places, moved.turn)
             for c in (groom.locks, groom.guides)
         )
     worn = [accessory.moved(groom.locks.points, locks.points) for accessory in groom.accessories]
     return replace(groom, locks=locks, guides=guides, accessories=worn)
 
 
-def _turn(locks: Curves, scalp: Mesh) -> Array | None:
-    """The rotation of the roots to their places on the scalp; None where these are no similar arrangement."""
-    if locks.curve["root_triangle"].max() >= len(scalp.triangles):
+def _places(curves: Curves, scalp: Mesh) -> Array | None:
+    """The places of the roots on the scalp; None where a root has none, or a wrong one."""
+    if not {"root_triangle", "root_barycentric"} <= curves.curve.keys():
         return None
-    before, after = np.asarray(locks.roots, np.float64), root_places(locks, scalp.points, scalp.triangles)
-    turn = best_rotation(before, after)
-    turned, after = (before - before.mean(axis=0)) @ turn, after - after.mean(axis=0)
+    triangle = curves.curve["root_triangle"]
+    if ((triangle < 0) | (triangle >= len(scalp.triangles))).any():
+        return None
+    return root_places(curves, scalp.points, scalp.triangles)
+
+
+def _motion(locks: Curves, scalp: Mesh) -> Similarity | None:
+    """The motion of the roots to their places on the scalp; None where these are no similar arrangement."""
+    if (places := _places(locks, scalp)) is None:
+        return None
+    roots = np.asarray(locks.roots, np.float64)
+    turn, centres = best_rotation(roots, places), (roots.mean(axis=0), places.mean(axis=0))
+    turned, after = (roots - centres[0]) @ turn, places - centres[1]
     size = np.sqrt((after**2).sum())
-    scale = (turned * after).sum() / max((turned**2).sum(), 1e-300)
-    return turn if np.sqrt(((scale * turned - after) ** 2).sum()) <= SAME_SURFACE * size else None
+    moved = Similarity(turn, float((turned * after).sum() / max((turned**2).sum(), 1e-300)), *centres)
+    return moved if np.sqrt(((moved.of(roots) - places) ** 2).sum()) <= SAME_SURFACE * size else None
 
 
 def _on_nearest(curves: Curves, groom: Groom) -> Curves:

@@ -10,6 +10,7 @@ the order in which they follow, little-endian and without gaps.
 from __future__ import annotations
 
 import json
+import math
 import os
 import queue
 import subprocess
@@ -24,6 +25,7 @@ from numpy.typing import NDArray
 TYPES = ("<f4", "<f8", "<i4", "<i8")
 MOST_HEADER = 64_000_000  # bytes of the line of a message
 MOST_VALUES = 2**31  # of an array
+MOST_AXES = 8
 
 
 class Message(NamedTuple):
@@ -34,7 +36,11 @@ class Message(NamedTuple):
 
 
 class BrokenMessage(Exception):
-    """Bytes that are no message; nothing after them can be read."""
+    """Bytes that are no message, up to the end of a line. id: that of the message, where it has one"""
+
+    def __init__(self, reason: str, id: Any = None) -> None:
+        super().__init__(reason)
+        self.id = id
 
 
 def write_message(
@@ -58,31 +64,40 @@ def write_message(
 
 
 def read_message(stream: IO[bytes]) -> Message | None:
-    """Reads a message; None at the end of the stream. Raises BrokenMessage for anything else."""
+    """Reads a message; None at the end of the stream. Raises BrokenMessage for anything else; the next line may be one.
+
+    Raises MemoryError for arrays that do not fit into it.
+    """
     line = stream.readline(MOST_HEADER)
     if not line:
         return None
+    begin = repr(line[:60])
+    if len(line) == MOST_HEADER and not line.endswith(b"\n"):
+        while (line := stream.readline(MOST_HEADER)) and not line.endswith(b"\n"):
+            pass
+        raise BrokenMessage(f"a message begins with {begin}; must be a line of at most {MOST_HEADER:,} bytes")
+    header: Any = None
     try:
         header = json.loads(line)
-        entries = [(str(name), str(kind), [int(n) for n in shape]) for name, kind, shape in header.pop("arrays", [])]
-    except (ValueError, AttributeError, TypeError, RecursionError):
-        raise BrokenMessage(f"a message begins with {line[:60]!r}; must be a line of JSON, an object") from None
+        entries = [_entry(*entry) for entry in header.pop("arrays", [])]
+    except (ValueError, AttributeError, TypeError, OverflowError, RecursionError):
+        id = header.get("id") if isinstance(header, dict) else None
+        raise BrokenMessage(f"a message begins with {begin}; must be a line of JSON, an object", id) from None
+    for name, kind, shape in entries:
+        if kind not in TYPES or min(shape, default=0) < 0 or len(shape) > MOST_AXES or math.prod(shape) > MOST_VALUES:
+            given = f"the type {kind[:20]} and the shape {str(shape[:MOST_AXES])[:100]}"
+            raise BrokenMessage(f"array {name[:60]} has {given}; cannot be read", header.get("id"))
     arrays: dict[str, NDArray[Any]] = {}
     for name, kind, shape in entries:
-        if kind not in TYPES or min(shape, default=0) < 0 or _product(shape) > MOST_VALUES:
-            raise BrokenMessage(f"array {name} has the type {kind} and the shape {shape}; cannot be read")
         values = np.empty(shape, kind)
         if values.size and _read_into(stream, values.data.cast("B")) < values.nbytes:
-            raise BrokenMessage(f"array {name} ends too early")
+            raise BrokenMessage(f"array {name[:60]} ends too early", header.get("id"))
         arrays[name] = values
     return Message(header, arrays)
 
 
-def _product(shape: Sequence[int]) -> int:
-    product = 1
-    for length in shape:
-        product *= length
-    return product
+def _entry(name: str, kind: str, shape: Sequence[int]) -> tuple[str, str, list[int]]:
+    return str(name), str(kind), [int(length) for length in shape]
 
 
 def _read_into(stream: IO[bytes], place: memoryview) -> int:

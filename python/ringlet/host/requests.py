@@ -9,8 +9,9 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from ringlet.data import limits
 from ringlet.data.explain import explain
+from ringlet.data.settings import check_texts
 
-Name = Annotated[str, Field(pattern=r"^[^/\\:\x00]{1,120}$")]  # of a file in the folder
+Name = Annotated[str, Field(pattern=r"^[^/\\:]*[^./\\:][^/\\:]*$", max_length=120)]  # of a file in the folder
 Place = Annotated[list[str | Annotated[int, Field(ge=0)]], Field(min_length=1, max_length=20)]
 Frame = Annotated[int, Field(ge=-limits.FRAME, le=limits.FRAME)]
 Share = Annotated[float, Field(ge=0.001, le=1.0)]
@@ -188,6 +189,7 @@ _REQUEST: TypeAdapter[AnyRequest] = TypeAdapter(Annotated[AnyRequest, Field(disc
 
 def parse_request(header: dict[str, Any]) -> AnyRequest:
     """Checks a request; raises UserError with the wrong entry."""
+    check_texts(header, "request")
     try:
         return _REQUEST.validate_python(header)
     except ValidationError as error:

@@ -8,10 +8,11 @@ from importlib.metadata import version
 from typing import Any, BinaryIO
 
 from ringlet.data.errors import UserError, one_line
+from ringlet.data.explain import shown
 from ringlet.data.reads import unrecorded
 from ringlet.host import grooms, requests, scene_files, shots, texts
 from ringlet.host.link import BrokenMessage, Message, read_message, write_message
-from ringlet.viewer.worker import SerialWorker, report_mistake
+from ringlet.viewer.worker import SerialWorker, failure
 
 PROTOCOL = 1  # version of the messages
 LONG = (requests.Simulate, requests.Hairs)
@@ -37,53 +38,62 @@ class Server:
 
     def run(self) -> None:
         """Answers until the input ends; then what is in progress is canceled."""
-        try:
-            while (message := read_message(self._source)) is not None:
-                self._take(message)
-        except BrokenMessage as error:
-            self._write({"id": None, "kind": "error", "message": str(error)})
+        while self.take_next():
+            pass
         for canceled in list(self._canceled.values()):
             canceled.set()
 
-    def _take(self, message: Message) -> None:
-        number = message.header.get("id")
+    def take_next(self) -> bool:
+        """Takes the next message, whatever it is; returns whether there was one."""
+        number = None
         try:
-            request = requests.parse_request(message.header)
-        except UserError as error:
-            self._write({"id": number, "kind": "error", "message": str(error)})
-            return
+            message = read_message(self._source)
+            if message is None:
+                return False
+            number = message.header.get("id")
+            self._take(message)
+        except BrokenMessage as error:
+            self._fail(error.id, error)
+        except Exception as error:
+            self._fail(number, error)
+        return True
+
+    def _take(self, message: Message) -> None:
+        request = requests.parse_request(message.header)
         if isinstance(request, requests.Cancel):
             if canceled := self._canceled.get(request.request):
                 canceled.set()
             return
+        if request.id in self._canceled:
+            raise UserError(f"request: id {shown(request.id)} is that of a request in progress; give another")
         self._canceled[request.id] = threading.Event()
         self._workers[isinstance(request, LONG)].post(self._answer, request, message.arrays)
 
     def _answer(self, request: requests.AnyRequest, arrays: dict[str, Any]) -> None:
         canceled = self._canceled[request.id]
         answer: dict[str, Any]
-        made: dict[str, Any] = {}
         try:
-            with unrecorded():  # a host writes its files again and again
-                if canceled.is_set():
-                    raise Canceled
-                answer, made = self._do(request, arrays, canceled)
-            answer = {"kind": "result", **answer}
-        except Canceled:
-            answer = {"kind": "canceled"}
-            if isinstance(request, requests.Simulate):
-                answer["left"] = shots.left_steps(request.folder, request.cache)
-        except UserError as error:
-            answer = {"kind": "error", "message": str(error)}
-        except OSError as error:
-            place = f"{error.filename}: " if error.filename else ""
-            answer = {"kind": "error", "message": one_line(f"{place}{error.strerror or error}; check the place")}
-        except MemoryError:
-            answer = {"kind": "error", "message": "memory ran out; ask for fewer locks, hairs or frames"}
+            try:
+                with unrecorded():  # a host writes its files again and again
+                    if canceled.is_set():
+                        raise Canceled
+                    answer, made = self._do(request, arrays, canceled)
+                answer = {"kind": "result", **answer}
+            except Canceled:
+                answer, made = {"kind": "canceled"}, {}
+                if isinstance(request, requests.Simulate):
+                    answer["left"] = shots.left_steps(request.folder, request.cache)
+            del self._canceled[request.id]
+            self._write({"id": request.id, **answer}, made)
         except Exception as error:
-            answer = {"kind": "error", "message": one_line(report_mistake("a request could not be answered", error))}
-        del self._canceled[request.id]
-        self._write({"id": request.id, **answer}, made)
+            self._canceled.pop(request.id, None)
+            self._fail(request.id, error)
+
+    def _fail(self, number: Any, error: Exception) -> None:
+        """Answers that a message could not be taken, or a request not be answered."""
+        is_id = isinstance(number, int) and not isinstance(number, bool)
+        message = str(error) if isinstance(error, BrokenMessage) else failure("a request could not be answered", error)
+        self._write({"id": number if is_id else None, "kind": "error", "message": message})
 
     def _do(self, request: requests.AnyRequest, arrays: dict[str, Any], canceled: threading.Event) -> Answer:
         def progress(stage: str, done: int, total: int) -> None:
@@ -118,8 +128,11 @@ class Server:
                 raise AssertionError("is answered when it is read")
 
     def _write(self, header: dict[str, Any], arrays: dict[str, Any] | None = None) -> None:
-        with self._writing:
-            write_message(self._answers, header, arrays)
+        try:
+            with self._writing:
+                write_message(self._answers, header, arrays)
+        except BrokenPipeError:  # the host has ended
+            os._exit(1)
 
     def stop(self, patience: float) -> None:
         """Waits for the requests in progress, for each thread up to ``patience`` [s]."""
@@ -133,8 +146,5 @@ def serve(source: BinaryIO, answers: BinaryIO, *, patience: float = 5.0) -> None
     patience: how long to wait then for the frame in progress [s]
     """
     server = Server(source, answers)
-    try:
-        server.run()
-        server.stop(patience)
-    except BrokenPipeError:  # the host has ended
-        os._exit(1)
+    server.run()
+    server.stop(patience)

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
-from ringlet.data.errors import UserError
 from ringlet.data.regular import read_text
 from ringlet.groom import Recipe
 from ringlet.viewer import protocol
@@ -20,7 +19,7 @@ from ringlet.viewer.publisher import Publisher, SendQueue
 from ringlet.viewer.reviewing import Reviewing
 from ringlet.viewer.viewport import Viewport
 from ringlet.viewer.wire import pack, trouble
-from ringlet.viewer.worker import LatestTaskWorker, Stale, report_mistake
+from ringlet.viewer.worker import LatestTaskWorker, Stale, failure
 
 
 @dataclass(frozen=True)
@@ -113,12 +112,10 @@ class Comparer:
             worker.raise_if_stale()
             self._call(self._show, asked)
             self._call(self._viewport.show, display, asked.side)
-        except UserError as error:
-            asked.page.put("trouble", trouble(str(error)))
         except Stale:
             raise
         except Exception as error:
-            asked.page.put("trouble", trouble(report_mistake("a groom to compare with could not be made", error)))
+            asked.page.put("trouble", trouble(failure("a groom to compare with could not be made", error)))
 
     def _show(self, asked: Comparison) -> None:
         self._shown[asked.side] = asked

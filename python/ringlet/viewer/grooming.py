@@ -21,7 +21,7 @@ from ringlet.viewer.publisher import Publisher
 from ringlet.viewer.viewport import Viewport, measured
 from ringlet.viewer.wire import pack
 from ringlet.viewer.work import too_large
-from ringlet.viewer.worker import LatestTaskWorker, Stale, report_mistake
+from ringlet.viewer.worker import LatestTaskWorker, Stale, failure
 
 PROGRESS_AFTER = 0.6  # time from which the progress of a groom is shown [s]
 
@@ -141,7 +141,7 @@ class Grooming:
         except Stale:
             raise
         except Exception as error:
-            self._call(self._failed, report_mistake("a groom could not be made", error))
+            self._call(self._failed, failure("a groom could not be made", error))
         finally:
             progress.close()
 

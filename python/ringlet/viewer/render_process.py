@@ -12,9 +12,9 @@ from multiprocessing.connection import Connection
 from typing import Any
 
 from ringlet.data.camera import Camera
-from ringlet.data.errors import UserError
 from ringlet.data.picture import PictureSettings
 from ringlet.picture import Pose
+from ringlet.viewer.worker import failure
 
 
 @dataclass(frozen=True)
@@ -87,11 +87,8 @@ def _serve(connection: Connection) -> None:
     try:
         for image, samples in picture.growing(task.pose, task.camera, task.settings):
             connection.send(RenderStep(_png(image), samples))
-    except UserError as error:
-        connection.send(RenderStep(error=str(error)))
     except Exception as error:
-        connection.send(RenderStep(error=f"render: this is a mistake in Ringlet ({error}); see the terminal"))
-        raise
+        connection.send(RenderStep(error=failure("a picture could not be drawn", error)))
     connection.send(None)
 
 

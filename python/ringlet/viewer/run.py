@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import secrets
 import socket
 import threading
@@ -60,6 +61,7 @@ def view(
     told(f"ringlet view: {file.name} at {address}  (Ctrl-C ends it)")
     if browser:
         threading.Timer(0.5, webbrowser.open, [address]).start()
+    logging.getLogger("asyncio").setLevel(logging.ERROR)  # that a page left is no warning
     server = uvicorn.Server(config)
     if until is not None:
         threading.Thread(target=_stop_when_set, args=(server, until), daemon=True).start()

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import asyncio
 import hmac
-import logging
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
 from pathlib import Path
-from urllib.parse import urlsplit
 
 from fastapi import FastAPI, Request, Response, WebSocket, WebSocketDisconnect
 from fastapi.staticfiles import StaticFiles
@@ -19,6 +17,7 @@ from ringlet.viewer import protocol
 from ringlet.viewer.pages import Page
 from ringlet.viewer.session import Session
 from ringlet.viewer.wire import trouble, unpack
+from ringlet.viewer.worker import failure
 
 STATIC = Path(__file__).with_name("static")
 LOOPBACK = ("localhost", "127.0.0.1", "[::1]")
@@ -34,8 +33,6 @@ POLICY = (
     "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; connect-src 'self' ws: wss:; "
     "frame-ancestors 'none'; base-uri 'none'; form-action 'none'; object-src 'none'"
 )
-
-log = logging.getLogger("ringlet.viewer")
 
 
 class AccessControl:
@@ -56,7 +53,7 @@ class AccessControl:
 
     def accepts(self, host: str, origin: str | None, token: str) -> bool:
         """Whether a websocket may open: for a page of the same origin that sends the token."""
-        same_origin = origin is None or urlsplit(origin).netloc == host
+        same_origin = origin is None or origin.partition("://")[2] == host
         return self.accepts_host(host) and same_origin and hmac.compare_digest(token.encode(), self.token.encode())
 
 
@@ -128,26 +125,25 @@ async def _receive(socket: WebSocket, session: Session, page: Page) -> None:
     invalid_messages = 0
     while True:
         try:
-            message = unpack(await socket.receive_bytes())
+            data = await socket.receive_bytes()
+        except KeyError:  # a text message; the page sends binary ones only
+            await socket.close(WRONG, "messages are binary")
+            return
+        try:
+            message = unpack(data)
             handled = asyncio.wrap_future(session.submit(session.handle, page, message))
             await asyncio.wait([handled], timeout=LONG)
             if not handled.done():
                 page.queue.put("slow", trouble(f"message: {message.kind} takes over {LONG:g} s; it is still worked on"))
             await handled
-        except KeyError:  # a text message; the page sends binary ones only
-            await socket.close(WRONG, "messages are binary")
-            return
         except UserError as error:
             invalid_messages += 1
             page.queue.put("trouble", trouble(str(error)))
             if invalid_messages > MAX_INVALID_MESSAGES and not isinstance(error.__cause__, UserError):
                 await socket.close(WRONG, "too many messages were wrong")
                 return
-        except (WebSocketDisconnect, RuntimeError):
-            raise
-        except Exception:
-            log.exception("a message of %s could not be handled", page.name)
-            page.queue.put("trouble", trouble("this is a mistake in Ringlet; see the terminal"))
+        except Exception as error:
+            page.queue.put("trouble", trouble(failure(f"a message of {page.name} could not be handled", error)))
 
 
 def _without_port(host: str) -> str:

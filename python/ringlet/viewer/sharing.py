@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from ringlet.data.errors import UserError
 from ringlet.viewer import protocol
 from ringlet.viewer.lights import live_rigs_of
 from ringlet.viewer.project import Project
@@ -16,7 +15,7 @@ from ringlet.viewer.publisher import SendQueue
 from ringlet.viewer.share_page import make_page
 from ringlet.viewer.share_review import review_of
 from ringlet.viewer.wire import pack, trouble
-from ringlet.viewer.worker import LatestTaskWorker, report_mistake
+from ringlet.viewer.worker import LatestTaskWorker, failure
 
 
 @dataclass(frozen=True)
@@ -61,7 +60,5 @@ class Sharer:
             name = f"{asked.file.name.split('.')[0]}.html"
             made = protocol.SharePage(name=name, hairs=page.hairs, of=page.of)
             asked.page.put("share", pack(made, text=np.frombuffer(page.text.encode(), np.uint8)))
-        except UserError as error:
-            asked.page.put("trouble", trouble(str(error)))
         except Exception as error:
-            asked.page.put("trouble", trouble(report_mistake("a share page could not be made", error)))
+            asked.page.put("trouble", trouble(failure("a share page could not be made", error)))

@@ -18,7 +18,7 @@ from ringlet.sim.motion import Motion
 from ringlet.viewer.runs import Run, Swing, Take, inputs
 from ringlet.viewer.scene import FrameState
 from ringlet.viewer.stage import Stage
-from ringlet.viewer.worker import report_mistake
+from ringlet.viewer.worker import failure
 
 MAX_CHECKPOINT_BYTES = 1_500_000_000  # memory for the checkpoints of frames
 MAX_TAKES = 8  # earlier takes of a groom that are kept
@@ -125,10 +125,8 @@ class Simulation:
             previous.join()
         try:
             self._simulate(run)
-        except UserError as error:
-            self._fail(str(error), run.stopping)
         except Exception as error:
-            self._fail(report_mistake("a shot could not be run", error), run.stopping)
+            self._fail(failure("a shot could not be run", error), run.stopping)
         self._changed()
 
     def _fail(self, message: str, stopping: threading.Event) -> None:

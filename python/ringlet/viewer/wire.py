@@ -19,6 +19,7 @@ from pydantic import ValidationError
 
 from ringlet.data.errors import UserError
 from ringlet.data.explain import explain
+from ringlet.data.settings import check_texts
 from ringlet.viewer.protocol import FROM_PAGE, FromPage, Message, Trouble
 
 MOST = 8_000_000  # largest size of a message from a page [bytes]
@@ -65,9 +66,11 @@ def unpack(data: bytes) -> FromPage:
     if len(data) < 4 or len(data) != 4 + struct.unpack_from("<I", data)[0]:
         raise UserError("message: its length is not the one it states; send it again")
     try:
-        return FROM_PAGE.validate_json(data[4:], strict=True)
+        message = FROM_PAGE.validate_json(data[4:], strict=True)
     except ValidationError as error:
         raise explain(error, "message", _parsed(data[4:])) from None
+    check_texts(_parsed(data[4:]), "message")
+    return message
 
 
 def _parsed(text: bytes) -> Any:

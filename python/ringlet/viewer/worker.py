@@ -9,6 +9,8 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from typing import Any, Generic, TypeVar
 
+from ringlet.data.errors import line_of, one_line
+
 Task = TypeVar("Task")
 
 
@@ -56,10 +58,15 @@ def _log_exception(future: Future[Any]) -> None:
         log.error("the review could not go on", exc_info=error)
 
 
-def report_mistake(what: str, error: Exception) -> str:
-    """Logs an error that is no UserError; returns a message for the pages."""
+def failure(what: str, error: Exception) -> str:
+    """The message on a call that failed; a mistake in Ringlet is logged.
+
+    what: what could not be done, for the log
+    """
+    if (line := line_of(error)) is not None:
+        return line
     log.error(what, exc_info=error)
-    return f"this is a mistake in Ringlet ({error}); see the terminal"
+    return one_line(f"this is a mistake in Ringlet ({type(error).__name__}: {error}); see the terminal")
 
 
 class Timer:
