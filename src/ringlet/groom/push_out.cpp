@@ -10,7 +10,7 @@ namespace {
 
 constexpr double decay_to_root = 6e-3; // [m] decay length of a move towards the root
 constexpr double decay_to_tip = 0.1;   // [m] decay length of a move towards the tip
-constexpr double largest_stretch = 2.0;
+constexpr double largest_stretch_pushed_out = 2.0;
 
 // Outward direction of a push: smooth from triangle to triangle, but never against the side that the sign of the distance
 // names.
@@ -145,7 +145,7 @@ std::vector<Vec3> push_out(const CurveView &curves, View<const Solid *> solids, 
                 if (!last) smooth_moves(points, moves, scratch);
                 for (size_t k = 1; k < points.size(); ++k) points[k] += moves[k];
             }
-            keep_form(curves[i], largest_stretch, points);
+            keep_form(curves[i], largest_stretch_pushed_out, points);
         }
     }
     return result;

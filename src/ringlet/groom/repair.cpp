@@ -21,8 +21,8 @@ constexpr double body_weight = 4.0;       // weight of a target outside of a bod
 constexpr double largest_weight = 4.0;    // largest sum of weights at a point
 constexpr double smoothing_length = 4e-3; // [m] length along a curve over which a move decays
 constexpr double regularisation = 0.05;   // weight of keeping form and place
-constexpr double largest_stretch = 1.25;  // of a curve
-constexpr double skin = 2.5e-4;           // [m] motion of points after which candidate pairs are searched again
+constexpr double largest_stretch_repaired = 1.25; // of a curve
+constexpr double skin = 2.5e-4;                   // [m] motion of points after which candidate pairs are searched again
 
 double allowed_depth(const Allowed &allowed, double along) { return along <= allowed.root_length ? allowed.root_depth : 0.0; }
 
@@ -139,7 +139,7 @@ std::vector<Vec3> Repair::points() const {
     std::vector<Vec3> result = best_;
     const CurveView before{before_, offsets_};
     for (int i = 0; i < before.count(); ++i)
-        keep_form(before[i], largest_stretch, std::span(result).subspan(offsets_[i], before[i].size()));
+        keep_form(before[i], largest_stretch_repaired, std::span(result).subspan(offsets_[i], before[i].size()));
     return result;
 }
 

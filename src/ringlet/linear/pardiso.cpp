@@ -8,13 +8,14 @@
 namespace ringlet {
 namespace {
 
-using Index = long long; // of pardiso_64, whatever the library's default is
+using PardisoIndex = long long; // of pardiso_64, whatever the library's default is
 
 // Functions of the library, as its manual declares them.
 struct Library {
-    void (*pardiso)(void *handle, const Index *factors, const Index *number, const Index *type, const Index *phase,
-                    const Index *rows, const void *values, const Index *starts, const Index *columns, Index *permutation,
-                    const Index *right_sides, Index *settings, const Index *verbose, void *b, void *x, Index *error);
+    void (*pardiso)(void *handle, const PardisoIndex *factors, const PardisoIndex *number, const PardisoIndex *type,
+                    const PardisoIndex *phase, const PardisoIndex *rows, const void *values, const PardisoIndex *starts,
+                    const PardisoIndex *columns, PardisoIndex *permutation, const PardisoIndex *right_sides,
+                    PardisoIndex *settings, const PardisoIndex *verbose, void *b, void *x, PardisoIndex *error);
     int (*set_threading_layer)(int layer);
     int (*set_threads)(int count);
 };
@@ -49,7 +50,7 @@ public:
         settings_[17] = -1;                                         // count the factor's entries
         settings_[34] = 1;                                          // indices from 0, blocks row by row
         settings_[36] = pattern.block() == 1 ? 0 : pattern.block(); // block CSR
-        if (const Index error = call(analyse, nullptr); error != 0)
+        if (const PardisoIndex error = call(analyse, nullptr); error != 0)
             throw std::runtime_error("pardiso: analysis failed with error " + std::to_string(error));
     }
     ~Pardiso() override { call(release, nullptr); }
@@ -57,7 +58,7 @@ public:
     Pardiso &operator=(const Pardiso &) = delete;
 
     bool factor(const SparseMatrix &matrix) override {
-        const Index error = call(factorise, matrix.values().data());
+        const PardisoIndex error = call(factorise, matrix.values().data());
         if (error != 0 && error != not_definite)
             throw std::runtime_error("pardiso: factorisation failed with error " + std::to_string(error) +
                                      (error == no_memory ? " (out of memory)" : ""));
@@ -66,19 +67,19 @@ public:
 
     void solve(View<double> b, std::span<double> x) const override {
         // The interface declares b writable, for a setting that is not used.
-        if (const Index error = call(substitute, nullptr, const_cast<double *>(b.data()), x.data()); error != 0)
+        if (const PardisoIndex error = call(substitute, nullptr, const_cast<double *>(b.data()), x.data()); error != 0)
             throw std::runtime_error("pardiso: solution failed with error " + std::to_string(error));
     }
 
     std::int64_t entries() const override { return settings_[17] * (settings_[36] ? settings_[36] * settings_[36] : 1); }
 
 private:
-    static constexpr Index analyse = 11, factorise = 22, substitute = 33, release = -1; // phases
-    static constexpr Index not_definite = -4, no_memory = -2;                           // errors
+    static constexpr PardisoIndex analyse = 11, factorise = 22, substitute = 33, release = -1; // phases
+    static constexpr PardisoIndex not_definite = -4, no_memory = -2;                           // errors
 
-    Index call(Index phase, const void *values, double *b = nullptr, double *x = nullptr) const {
-        const Index one = 1, zero = 0, positive_definite = 2, rows = Index(starts_.size()) - 1;
-        Index error = 0;
+    PardisoIndex call(PardisoIndex phase, const void *values, double *b = nullptr, double *x = nullptr) const {
+        const PardisoIndex one = 1, zero = 0, positive_definite = 2, rows = PardisoIndex(starts_.size()) - 1;
+        PardisoIndex error = 0;
         const int before = library.set_threads(omp_get_max_threads());
         library.pardiso(static_cast<void *>(handle_), &one, &one, &positive_definite, &phase, &rows, values, starts_.data(),
                         columns_.data(), nullptr, &one, settings_, &zero, b, x, &error);
@@ -86,9 +87,9 @@ private:
         return error;
     }
 
-    std::vector<Index> starts_, columns_;
+    std::vector<PardisoIndex> starts_, columns_;
     mutable void *handle_[64] = {}; // internal memory of PARDISO
-    mutable Index settings_[64] = {};
+    mutable PardisoIndex settings_[64] = {};
 };
 
 } // namespace

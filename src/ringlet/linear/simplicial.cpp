@@ -7,9 +7,9 @@
 namespace ringlet {
 namespace {
 
-using Index = std::int64_t; // a factor can have more entries than an int counts
-using Sparse = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
-using Permutation = Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, Index>;
+using FactorIndex = std::int64_t; // a factor can have more entries than an int counts
+using Sparse = Eigen::SparseMatrix<double, Eigen::ColMajor, FactorIndex>;
+using Permutation = Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, FactorIndex>;
 
 // Calls visit(row, column, number) for every stored block.
 template <class Visit> void for_each_block(const SparsePattern &pattern, const Visit &visit) {
@@ -19,14 +19,14 @@ template <class Visit> void for_each_block(const SparsePattern &pattern, const V
 
 // Fill-reducing permutation of the block rows.
 Permutation order_blocks(const SparsePattern &pattern) {
-    std::vector<Eigen::Triplet<double, Index>> graph;
+    std::vector<Eigen::Triplet<double, FactorIndex>> graph;
     graph.reserve(pattern.columns().size());
     for_each_block(pattern,
                    [&](int row, int column, int) { graph.emplace_back(std::max(row, column), std::min(row, column), 1.0); });
     Sparse lower(pattern.rows(), pattern.rows());
     lower.setFromTriplets(graph.begin(), graph.end());
     Permutation from;
-    Eigen::AMDOrdering<Index>()(lower.selfadjointView<Eigen::Lower>(), from);
+    Eigen::AMDOrdering<FactorIndex>()(lower.selfadjointView<Eigen::Lower>(), from);
     return from.inverse();
 }
 
@@ -38,12 +38,12 @@ public:
         for (int i = 0; i < pattern.size(); ++i) to_.indices()[i] = blocks_to.indices()[i / block] * block + i % block;
 
         // Reordered lower triangle, with the number of each value in place of the value.
-        std::vector<Eigen::Triplet<double, Index>> numbers;
+        std::vector<Eigen::Triplet<double, FactorIndex>> numbers;
         numbers.reserve(pattern.values());
         for_each_block(pattern, [&](int row, int column, int at) {
             for (int r = 0; r < block; ++r)
                 for (int c = 0; c < (row == column ? r + 1 : block); ++c) {
-                    const Index i = to_.indices()[row * block + r], j = to_.indices()[column * block + c];
+                    const FactorIndex i = to_.indices()[row * block + r], j = to_.indices()[column * block + c];
                     numbers.emplace_back(std::max(i, j), std::min(i, j), double(at * pattern.square() + r * block + c));
                 }
         });
@@ -68,8 +68,8 @@ public:
 private:
     Permutation to_; // of the scalars
     Sparse lower_;
-    std::vector<Index> source_; // number of the value of each entry of lower_
-    Eigen::SimplicialLDLT<Sparse, Eigen::Lower, Eigen::NaturalOrdering<Index>> ldlt_;
+    std::vector<FactorIndex> source_; // number of the value of each entry of lower_
+    Eigen::SimplicialLDLT<Sparse, Eigen::Lower, Eigen::NaturalOrdering<FactorIndex>> ldlt_;
 };
 
 } // namespace

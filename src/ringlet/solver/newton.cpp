@@ -46,7 +46,7 @@ SolverEffort Newton::minimise(View<Vec3> start, const NewtonSettings &settings, 
         iteration.damping *= solver_settings::damping_decay;
         if (iteration.damping < solver_settings::least_damping) iteration.damping = 0.0;
     }
-    const std::vector<unsigned char> stalled_objects = stalled(settings.tolerance);
+    std::vector<unsigned char> stalled_objects = stalled(settings.tolerance);
     measure_left(initial, iteration, stalled_objects, report);
     report.stalled = double(std::count(stalled_objects.begin(), stalled_objects.end(), 1));
     const double residual = largest_.empty() ? 0.0 : *std::max_element(largest_.begin(), largest_.end());
