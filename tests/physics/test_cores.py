@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from braids import EXAMPLE, RECIPE, SHAPES
-from ringlet.data.groom import CORE, SECTION
+from ringlet.data.groom import CORE, SECTION, STRAND_RADIUS
 from ringlet.sim.cores import Cores
 
 from ringlet import api
@@ -45,13 +45,17 @@ def test_cores_and_strands_play_in_one_shot(groom):
     assert np.isfinite(points).all() and statistics["max_stretch"] < 0.05
     moved = np.linalg.norm(points - groom.locks.points, axis=1).reshape(len(core), -1)
     assert (moved[core].max(axis=1) > 2e-3).all()  # they swing
-    # A core carries its strands rigidly across itself: distances of strands at one place stay.
+    np.testing.assert_allclose(groom.locks.with_points(points).edge_lengths(), groom.locks.edge_lengths(), rtol=0.05)
+    carried = groom.locks.take(core)
+    kept = carried.with_points(points[groom.locks.point_rows(core)]).edge_lengths()
+    np.testing.assert_allclose(kept, carried.edge_lengths(), rtol=1e-4)  # the rounding of files
+    # A core carries its strands across itself: their distances change by less than their radius.
     for section in np.unique(groom.locks.curve[SECTION][core]):
         rows = np.flatnonzero(groom.locks.curve[SECTION] == section)
         now, groomed = (p.reshape(len(core), -1, 3)[rows] for p in (points, groom.locks.points))
         for a, b in ((0, 1), (1, 2)):
             now_apart, apart = (np.linalg.norm(p[a] - p[b], axis=1) for p in (now, groomed))
-            np.testing.assert_allclose(now_apart, apart, atol=1e-6)
+            np.testing.assert_allclose(now_apart, apart, atol=groom.locks.curve[STRAND_RADIUS].max())
 
 
 def test_a_core_weighs_and_resists_as_its_strands_side_by_side(groom):
@@ -87,7 +91,10 @@ def test_a_cornrow_may_be_a_core_too():
     assert statistics["max_stretch"] < 0.05
     rows = motion.points(motion.first + 5).reshape(len(made.locks), -1, 3)
     groomed = made.locks.points.reshape(rows.shape)
+    np.testing.assert_allclose(
+        np.linalg.norm(np.diff(rows, axis=1), axis=2), np.linalg.norm(np.diff(groomed, axis=1), axis=2), rtol=1e-4
+    )
     for a, b in ((0, 1), (1, 2)):
         np.testing.assert_allclose(
-            np.linalg.norm(rows[a] - rows[b], axis=1), np.linalg.norm(groomed[a] - groomed[b], axis=1), atol=1e-6
+            np.linalg.norm(rows[a] - rows[b], axis=1), np.linalg.norm(groomed[a] - groomed[b], axis=1), atol=5e-5
         )

@@ -86,3 +86,22 @@ def test_curls_that_changed_are_counted() -> None:
 )
 def test_ranges_of_frames_are_short(numbers: list[int], text: str) -> None:
     assert ranges(numbers) == text
+
+
+def test_folded_braids_and_strands_in_bodies_are_named() -> None:
+    statistics = frames()
+    statistics[3] |= {"folds": 4, "folded_locks": [7, 8]}
+    statistics[5]["inside"] = [{"what": "skin", "depth": 2.34e-3, "points": 3, "locks": [9]}]
+    assert judge(statistics).lines() == [
+        "Look at frames 4, 6 before you use this result.",
+        "Strands of braids that move as their core are in skin, by up to 2.3 mm (frame 6; lock 9); raise "
+        'contact.own_radius, or let these braids move as strands (simulate = "strands").',
+        "Braids fold, at 4 points in frame 4 (frame 4; locks 7, 8); raise solver.substeps, or let those that move as "
+        'their core move as strands (simulate = "strands").',
+    ]
+
+
+def test_stretch_beyond_all_measure_is_written_without_an_exponent() -> None:
+    statistics = frames()
+    statistics[3]["max_stretch"] = 4.03
+    assert "stretched by up to 403 %" in judge(statistics).lines()[1]

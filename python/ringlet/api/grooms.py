@@ -289,9 +289,10 @@ def check_groom(
 ) -> dict[str, Any]:
     """Intersections of a groom with the scalp, the body and itself: places, locks, greatest depth [m], worst places.
 
-    Returns ``found``; lengths [m]: the ``thickness``, the ``lock_thickness`` of locks with their hairs, and the largest
-    ``own_thickness`` at which locks with a radius of their own count; the density and cover of ``measure_hairs``. With
-    ``fixed`` also ``left``, the remaining intersections, and ``repair``, the displacements.
+    Returns ``found``, and ``folds``: the braids that fold back on themselves, after the repair if there is one. Lengths
+    [m] are the ``thickness``, the ``lock_thickness`` of locks with their hairs, and the largest ``own_thickness`` at
+    which locks with a radius of their own count. Density and cover are those of ``measure_hairs``. With ``fixed`` also
+    ``left``, the remaining intersections, and ``repair``, the displacements.
 
     root_depth:  how deep a lock may be in the skin up to ``root_length`` from its root [m]
     thickness:   distance below which two locks count as intersecting [m]
@@ -316,13 +317,15 @@ def check_groom(
         "lock_thickness": grooms.lock_thickness(groom),
         "own_thickness": 2.0 * own_radius * float(own_radii(groom.locks).max(initial=0.0)),
         "found": findings.summary(),
+        "folds": grooms.folded_braids(groom.locks),
         **grooms.hair_measures(groom),
     }
     if fixed is not None:
         repair = grooms.fix_groom(groom, others, allowed, progress)
         write_groom(repair.groom, fixed)
         findings = repair.left
-        summary |= {"left": findings.summary(), "repair": repair.summary()}
+        folds = grooms.folded_braids(repair.groom.locks)
+        summary |= {"left": findings.summary(), "repair": repair.summary(), "folds": folds}
     if picture is not None:
         from ringlet.picture import write_places
 

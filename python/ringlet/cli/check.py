@@ -75,7 +75,7 @@ def check(
     as_json: Json = False,
     threads: Threads = None,
 ) -> None:
-    """Finds where locks of a GROOM intersect the scalp, the body or other hair, and how deep.
+    """Finds where locks of a GROOM intersect the scalp, the body or other hair, and how deep, and braids that fold.
 
     Exits with 1 if there are any. Example: ringlet check groom.usdc --fix -o fixed.usdc --picture check.png
     """
@@ -100,9 +100,15 @@ def check(
                 for kind, of in summary[name].items()
             ]
             print_table([name, "places", "locks", "depth"], rows, right=(1, 2, 3))
+        if (folds := summary["folds"])["places"]:
+            first = folds["worst"][0]
+            print(
+                f"{folds['braids']} of {folds['of']} braids or twists fold back on themselves, first lock "
+                f"{first['lock']} at its point {first['point']}."
+            )
         print(_thicknesses(summary))
         print(density(summary))
-    if any(of["places"] for of in summary["left" if fix else "found"].values()):
+    if summary["folds"]["places"] or any(of["places"] for of in summary["left" if fix else "found"].values()):
         raise typer.Exit(1)
 
 

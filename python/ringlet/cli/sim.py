@@ -90,6 +90,8 @@ def sim(
                     made_groom = ringlet.load_groom(source, variant=variant, rebind=rebind, progress=progress)
                 for path in filter(None, (output, contacts)):
                     ringlet.check_place(path, {"head": made_groom.scalp_file})
+                for conflict in made_groom.conflicts:
+                    _warn(run, said, conflict)
                 if made:
                     ringlet.write_groom(made_groom, layer)
                 if finished:

@@ -59,10 +59,14 @@ class Curves:
 
     def lengths(self) -> NDArray[np.floating]:
         """Arc length of every curve [m], shape (count,)."""
-        along = np.zeros(len(self.points))
-        along[1:] = self._steps()
-        along[self.offsets[:-1]] = 0.0  # the jump from one curve to the next is no edge
-        return np.add.reduceat(along, self.offsets[:-1]) if len(self) else np.empty(0)
+        return np.add.reduceat(self.edge_lengths(), self.offsets[:-1]) if len(self) else np.empty(0)
+
+    def edge_lengths(self) -> NDArray[np.floating]:
+        """Length of the edge that begins at each point [m], shape (n,); 0 at the last of a curve."""
+        edges = np.zeros(len(self.points))
+        edges[:-1] = self._steps()
+        edges[self.offsets[1:] - 1] = 0.0  # the jump from one curve to the next is no edge
+        return edges
 
     def _steps(self) -> NDArray[np.floating]:
         """Distance of every point from the one before, also from one curve to the next [m], shape (n - 1,)."""

@@ -31,6 +31,7 @@ from ringlet.data.groom import Groom
 from ringlet.data.regular import read_text
 from ringlet.farm.grid import Task
 from ringlet.groom import hair_count
+from ringlet.report import percent
 from ringlet.shot import Shot
 
 FORMAT = 1
@@ -213,7 +214,7 @@ def _one_line(statistics: dict[str, Any]) -> str:
     contacts = f", {contact['contacts']} contacts" if contact else ""
     return (
         f"{statistics['wall_ms']:.0f} ms, {statistics['newton']:.1f} Newton iterations, "
-        f"stretch {100 * statistics['max_stretch']:.2g} %{contacts}"
+        f"stretch {percent(statistics['max_stretch'])}{contacts}"
     )
 
 

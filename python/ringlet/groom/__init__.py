@@ -7,6 +7,7 @@ from ringlet.groom.color import hair_colors
 from ringlet.groom.density import hair_count, hairs_per_cm2
 from ringlet.groom.edits_file import add_points, add_settings, release, restored_on_error, row_of
 from ringlet.groom.fix import fix_groom
+from ringlet.groom.folds import folded_braids
 from ringlet.groom.hair_measures import hair_cover, hair_measures, lock_thickness
 from ringlet.groom.hair_settings import HairSettings
 from ringlet.groom.hairs import HairMemory
@@ -32,6 +33,7 @@ __all__ = [
     "add_settings",
     "check_groom",
     "fix_groom",
+    "folded_braids",
     "grooms_of",
     "hair_colors",
     "hair_count",

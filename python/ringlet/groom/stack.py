@@ -24,6 +24,7 @@ from ringlet.groom.adopted import Residual
 from ringlet.groom.color import colored
 from ringlet.groom.edge import Edge, EdgeScalp
 from ringlet.groom.edits import Edit, Edits
+from ringlet.groom.folds import fold_warnings
 from ringlet.groom.hair_measures import raise_density
 from ringlet.groom.hair_settings import HairSettings
 from ringlet.groom.hairs import HairMemory
@@ -185,6 +186,7 @@ def make_groom(
             *lengthened,
             *_inward(before_contact, surface),
             *_not_strands(curves),
+            *fold_warnings(curves),
         ],
     )
     if recipe.hairs.cover is not None:

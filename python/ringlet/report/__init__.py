@@ -1,7 +1,7 @@
 """The report of a run: settings, output files, timings and statistics of the simulation."""
 
 from ringlet.report.charts import line_chart
-from ringlet.report.findings import explain_slowest
+from ringlet.report.findings import explain_slowest, percent
 from ringlet.report.model import Machine, MadeFile, Picture, RunReport, Stage, Table
 from ringlet.report.page import document, figure, table
 from ringlet.report.start import start_table, start_warnings
@@ -22,6 +22,7 @@ __all__ = [
     "figure",
     "judge",
     "line_chart",
+    "percent",
     "start_table",
     "start_warnings",
     "table",

@@ -29,6 +29,11 @@ def value(frame: dict[str, Any], key: str) -> Any:
     return found
 
 
+def percent(part: float) -> str:
+    """A part of 1 in per cent, with two digits or, from 100 % on, whole."""
+    return f"{100.0 * part:.2g} %" if 100.0 * part < 99.5 else f"{100.0 * part:.0f} %"
+
+
 def total(statistics: Statistics, key: str) -> int | None:
     """Sum of a count over all frames; None when no frame has it."""
     values = series(statistics, key)
@@ -82,20 +87,19 @@ def summary(statistics: Statistics) -> list[str]:
     if stretch:
         highest = max(v for v in stretch if math.isfinite(v))
         at = frame_number(statistics, stretch.index(highest))
-        sentences.append(f"No edge was ever longer than {100 * highest:.2g} % over its rest length (frame {at}).")
+        sentences.append(f"No edge was ever longer than {percent(highest)} over its rest length (frame {at}).")
     cloths = dict.fromkeys(name for frame in statistics for name in frame.get("cloth") or {})
     for name in cloths:
         highest = max(v for v in series(statistics, f"cloth.{name}.max_stretch") or [0.0] if math.isfinite(v))
-        sentences.append(f"Cloth '{name}' was stretched or squeezed by at most {100 * highest:.2g} %.")
+        sentences.append(f"Cloth '{name}' was stretched or squeezed by at most {percent(highest)}.")
     if has_contact:
         violations = f"{total(statistics, 'contact.violations') or 0:,} times a pair was kept from meeting".replace(
             ",", "\u202f"
         )
         sentences.append(
             f"Nothing passed through anything: {violations}."
-            if not any(value(frame, "contact.lagging") for frame in statistics)
-            else f"{violations[0].upper()}{violations[1:]}; what lagged is elsewhere in its animation, where hair "
-            "may be inside it."
+            if not (elsewhere := _elsewhere(statistics))
+            else f"{violations[0].upper()}{violations[1:]}; {elsewhere}."
         )
     curl = {key: total(statistics, key) for key in ("flips", "winding_changes", "too_straight")}
     if any(curl.values()):
@@ -107,6 +111,17 @@ def summary(statistics: Statistics) -> list[str]:
     return sentences
 
 
+def _elsewhere(statistics: Statistics) -> str:
+    """What contact says nothing of, a clause; empty where there is nothing."""
+    if any(value(frame, "contact.lagging") for frame in statistics):
+        return "what lagged is elsewhere in its animation, where hair may be inside it"
+    return (
+        "strands of braids that move as their core are inside bodies"
+        if any(frame.get("inside") for frame in statistics)
+        else ""
+    )
+
+
 def explain_worst(statistics: Statistics) -> str | None:
     """One sentence about the frame of ``worst_frame``; None without one."""
     index = worst_frame(statistics)
@@ -116,7 +131,7 @@ def explain_worst(statistics: Statistics) -> str | None:
     phrases = {
         "nan": lambda v: f"{v:g} broken strands" if v else None,
         "unconverged": lambda v: f"{v:g} strands unsolved" if v and "contact" not in frame else None,
-        "max_stretch": lambda v: f"edges up to {100 * v:.2g} % too long",
+        "max_stretch": lambda v: f"edges up to {percent(v)} too long",
         "newton": lambda v: f"{v:.3g} Newton iterations for a strand on average",
         "newton_max": lambda v: f"{v:g} at most",
         "line_search_cuts": lambda v: f"steps cut short {v:g} times" if v else None,

@@ -10,7 +10,7 @@ from numbers import Real
 from statistics import median
 from typing import Any
 
-from ringlet.report.findings import Statistics, value
+from ringlet.report.findings import Statistics, percent, value
 
 MOST_STRAIN = 0.05  # of an edge; hair that is longer looks like rubber
 LEAST_MOTION = 0.8  # of the converged motion; hair that keeps less swings as if through water
@@ -67,7 +67,8 @@ class Verdict:
 
 def judge(statistics: Statistics) -> Verdict:
     """The verdict on the statistics of a simulation, one dict a frame as in ``Cache.statistics``."""
-    found = [look(statistics) for look in (_broken, _stalled, _lagging, _stretched, _slow, _unsolved, _changed)]
+    looks = (_broken, _stalled, _lagging, _inside, _stretched, _folded, _slow, _unsolved, _changed)
+    found = [look(statistics) for look in looks]
     findings = [finding for finding in found if finding]
     usable = not any(finding.unusable for finding in findings)
     if not usable:
@@ -114,6 +115,17 @@ def _lagging(statistics: Statistics) -> Finding | None:
     return Finding(what, "leave it more room, or raise solver.substeps", frames, list(worst["locks"]))
 
 
+def _inside(statistics: Statistics) -> Finding | None:
+    """Strands that cores carry; others have contact of their own."""
+    deep = [(entry, frame) for frame in statistics for entry in frame.get("inside", [])]
+    if not deep:
+        return None
+    worst = max(deep, key=lambda found: found[0]["depth"])[0]
+    what = f"Strands of braids that move as their core are in {worst['what']}, by up to {1e3 * worst['depth']:.2g} mm"
+    remedy = 'raise contact.own_radius, or let these braids move as strands (simulate = "strands")'
+    return Finding(what, remedy, _frames(statistics, lambda frame: bool(frame.get("inside"))), list(worst["locks"]))
+
+
 def _stretched(statistics: Statistics) -> Finding | None:
     frames = [frame for frame in statistics if _number(frame, "max_stretch") > MOST_STRAIN]
     if not frames:
@@ -121,7 +133,17 @@ def _stretched(statistics: Statistics) -> Finding | None:
     worst = max(_number(frame, "max_stretch") for frame in frames)
     locks = list(dict.fromkeys(frame["worst_lock"] for frame in frames if "worst_lock" in frame))
     remedy = "raise solver.newton, or solver.substeps where the head moves fast"
-    return Finding(f"Hair is stretched by up to {100 * worst:.2g} %", remedy, _numbers(frames), locks)
+    return Finding(f"Hair is stretched by up to {percent(worst)}", remedy, _numbers(frames), locks)
+
+
+def _folded(statistics: Statistics) -> Finding | None:
+    frames = [frame for frame in statistics if _number(frame, "folds") > 0]
+    if not frames:
+        return None
+    worst = max(frames, key=lambda frame: _number(frame, "folds"))
+    what = f"Braids fold, at {worst['folds']:g} points in frame {worst['frame']:g}"
+    remedy = 'raise solver.substeps, or let those that move as their core move as strands (simulate = "strands")'
+    return Finding(what, remedy, _numbers(frames), list(worst.get("folded_locks", [])))
 
 
 def _stalled(statistics: Statistics) -> Finding | None:

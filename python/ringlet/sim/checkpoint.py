@@ -26,7 +26,7 @@ from ringlet.data.files import replacing
 from ringlet.data.regular import check_regular, read_bytes, read_text
 from ringlet.sim.run_inputs import Inputs, changed_input
 
-VERSION = b"ringlet checkpoint 3\n"
+VERSION = b"ringlet checkpoint 4\n"
 EVERY = 10  # frames from one state to the next, at most
 VERTICES = 1_000_000  # simulated between states: a frame of that many may take minutes
 LOCK_FILE = "held"  # the file that a program locks while it runs

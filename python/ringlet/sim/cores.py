@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,11 +11,13 @@ from numpy.typing import NDArray
 from ringlet import _core
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.groom import CORE, SECTION, STRAND_RADIUS, WORN_MASS, WORN_RADIUS, Groom
+from ringlet.sim.inextensible import along_paths
 from ringlet.sim.roots import Roots
 
 Array = NDArray[np.float64]
 
 ADD_UP = "borne", WORN_MASS  # attributes of points: the sum over its strands is that of a core
+ROOT_REACH = 4.0  # length along a strand over which its root moves it, in distances of the root from that of the core
 
 
 @dataclass(frozen=True)
@@ -23,12 +26,13 @@ class Cores:
 
     groom:     with the locks that are simulated. A core is the mean of its strands; it has the id, the root and the
                attributes of the first, and a radius that covers all
+    whole:     with all locks
     of_core:   per lock of the whole groom the core that carries it; −1: it is simulated itself, shape (count,)
     simulated: per lock of the whole groom the row of it, or of its core, among those simulated, shape (count,)
     """
 
     groom: Groom
-    whole: Curves
+    whole: Groom
     of_core: NDArray[np.int64]
     simulated: NDArray[np.int64]
 
@@ -42,7 +46,7 @@ class Cores:
             of_core[marked] = np.unique(locks.curve[SECTION][marked], return_inverse=True)[1]
         alone = np.flatnonzero(of_core < 0)
         simulated = np.where(of_core < 0, np.cumsum(of_core < 0) - 1, len(alone) + of_core)
-        cores = cls(groom, locks, of_core, simulated)
+        cores = cls(groom, groom, of_core, simulated)
         return cores if not marked.any() else replace(cores, groom=replace(groom, locks=cores.reduced(locks)))
 
     @property
@@ -97,20 +101,65 @@ class Cores:
         offsets = self.groom.locks.offsets
         return np.concatenate([values[offsets[row] : offsets[row + 1]] for row in self.simulated])
 
-    def carried(self, points: Array, roots: Roots, scalp: Array, frame: float) -> Array:
-        """Points of all locks [m], shape (n, 3), for those of the simulated ones at ``frame`` on the scalp's points."""
+    def carried(self, points: Array, scalp: Array, frame: float) -> Array:
+        """Points of all locks [m], shape (n, 3), for those of the simulated ones at ``frame`` on the scalp's points.
+
+        ``p = c + f o + R q``: the core c carries the path q of a strand across the braid in its frames R. Near the
+        scalp the strand begins at its own root, o away from that of the core: f falls from 1 to 0. Edges keep their
+        groomed lengths.
+        """
         if not self.count:
             return points
-        locks = self.groom.locks
-        rest, now = (
-            _core.curve_frames(
-                np.ascontiguousarray(at, np.float64), locks.offsets, roots.axes(on, frame)[:, :, 0].copy()
-            )
-            for at, on in ((locks.points, self.groom.scalp.points), (points, scalp))
-        )
-        turn = now @ rest.transpose(0, 2, 1)
-        offset = self.whole.points - self.spread(locks.points)  # 0 of a lock that is simulated itself
-        return self.spread(points) + np.einsum("nij,nj->ni", self.spread(turn), offset)
+        locks, whole = self.groom.locks, self.whole.locks
+        roots = self._roots.carry(scalp, frame)[whole.offsets[:-1]]
+        away = np.repeat(roots - points[locks.offsets[:-1]][self.simulated], whole.counts, axis=0)
+        turn = self._frames(points, scalp, frame) @ self._rest_frames.transpose(0, 2, 1)
+        path = np.einsum("nij,nj->ni", self.spread(turn), self._paths)
+        placed = self.spread(points) + self._root_shares[:, None] * away + path
+        moved = np.flatnonzero(self.of_core >= 0)
+        rows, strands = whole.point_rows(moved), whole.take(moved)
+        placed[rows] = along_paths(placed[rows], strands.offsets, strands.edge_lengths())
+        return placed
+
+    @cached_property
+    def _roots(self) -> Roots:
+        """The roots of all locks."""
+        return Roots(self.whole)
+
+    @cached_property
+    def _rest_frames(self) -> Array:
+        return self._frames(self.groom.locks.points, self.groom.scalp.points, 0.0)
+
+    def _frames(self, points: Array, scalp: Array, frame: float) -> Array:
+        """Frames along simulated locks with those points [m], shape (n, 3, 3); rotation-minimising from the root."""
+        first = self._roots.axes(scalp, frame)[np.unique(self.simulated, return_index=True)[1], :, 0]
+        return _core.curve_frames(np.ascontiguousarray(points, np.float64), self.groom.locks.offsets, first.copy())
+
+    @cached_property
+    def _offsets(self) -> Array:
+        """Offset of each strand from its core in the groom [m], shape (n, 3); 0 of a lock that is simulated itself."""
+        return np.asarray(self.whole.locks.points - self.spread(self.groom.locks.points), np.float64)
+
+    @cached_property
+    def _root_shares(self) -> Array:
+        """The share of its root in the offset of a strand, which only falls along it, from 1 to 0; shape (n,)."""
+        locks, shares = self.whole.locks, np.zeros(len(self.whole.locks.points))
+        for row in np.flatnonzero(self.of_core >= 0):
+            points = slice(*locks.offsets[row : row + 2])
+            offset = self._offsets[points]
+            away = np.linalg.norm(offset[0])
+            if away > 0.0:
+                run = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(locks[row], axis=0), axis=1))])
+                near = np.clip(1.0 - run / (ROOT_REACH * away), 0.0, 1.0)
+                there = np.clip(offset @ offset[0] / away**2, 0.0, 1.0)
+                shares[points] = np.minimum.accumulate(there) * near * near * (3.0 - 2.0 * near)
+        return shares
+
+    @cached_property
+    def _paths(self) -> Array:
+        """The path of each strand across its braid, without the share of its root [m], shape (n, 3)."""
+        roots = np.repeat(self._offsets[self.whole.locks.offsets[:-1]], self.whole.locks.counts, axis=0)
+        return self._offsets - self._root_shares[:, None] * roots
 
 
 def _joined(parts: list[Curves]) -> Curves:

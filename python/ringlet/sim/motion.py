@@ -30,6 +30,7 @@ from ringlet.sim.statistics import StepReports, frame_statistics
 from ringlet.sim.strands import Strands
 from ringlet.sim.variation import material_factors
 from ringlet.sim.worn import worn_factors
+from ringlet.sim.written import Written
 
 
 def make_strands(
@@ -76,13 +77,14 @@ class Motion:
         first: int,
     ) -> None:
         _check(shot, groom.locks)
-        self.cores = Cores.of(groom)
+        self.cores, rest_of_all = Cores.of(groom), rest
         groom, rest = self.cores.groom, rest and self.cores.reduced(rest)
         self.shot, self.clip, self.locks, self.first = shot, clip, groom.locks, first
         self.roots = Roots(groom)
         stiffened = None if rest is None else rest.curve.get("stiffened")
         self.strands = make_strands(shot, groom, rest, stiffened, self.cores.material())
         self.strands.place(self.roots.carry(clip.at(first), first))
+        self._written = Written(self.cores, rest_of_all, np.asarray(self.strands.held))
         self.obstacles = [obstacle.starting_at(first) for obstacle in obstacles]
         self.garments = [SimulatedGarment(garment, self.obstacles, first) for garment in garments]
         self.scene: Scene | None = None
@@ -119,7 +121,7 @@ class Motion:
 
     def points(self, frame: float) -> NDArray[np.float64]:
         """The points of all locks of the groom at ``frame``, where the motion is [m], shape (n, 3)."""
-        return self.cores.carried(self.strands.positions, self.roots, self.clip.at(frame), frame)
+        return self.cores.carried(self.strands.positions, self.clip.at(frame), frame)
 
     @property
     def memory(self) -> dict[str, NDArray[Any]]:
@@ -153,7 +155,7 @@ class Motion:
     def _check_positions(self, frame: float) -> None:
         """Refuses positions that are not finite or far from the head."""
         head = self.clip.at(frame)
-        check_curves(self.locks, self.strands.positions, head, f"sim: locks at frame {frame:g}")
+        check_curves(self.cores.whole.locks, self.points(frame), head, f"sim: locks at frame {frame:g}")
         for garment in self.garments:
             where = f"sim: cloth '{garment.name}' at frame {frame:g}"
             check_positions(garment.cloth.positions, head, where, lambda row: f"vertex {row}")
@@ -173,7 +175,7 @@ class Motion:
         bodies = [(obstacle.mesh.triangles, obstacle.at(self.first), obstacle.at(other)) for obstacle in self.obstacles]
         for cloth in (garment.cloth for garment in self.garments if bodies):
             cloth.velocities[:] += rate * (moved_with(cloth.positions, bodies) - cloth.positions)
-        return {"frame": float(self.first)}
+        return {"frame": float(self.first), **self._judged(self.first)}
 
     def advance(self, begin: float, end: float) -> dict[str, Any]:
         """One frame's time passes while the scalp goes from frame ``begin`` to ``end``; returns its statistics."""
@@ -193,7 +195,12 @@ class Motion:
                 self.scene.penetrating if self.scene else 0,
                 self._lagging,
             ),
+            **self._judged(end),
         }
+
+    def _judged(self, frame: float) -> dict[str, Any]:
+        """Statistics of the locks as they are written at ``frame``, where the motion is."""
+        return self._written.statistics(self.points(frame), self.obstacles, frame)
 
     def _step(self, frame: float, dt: float, reports: StepReports) -> None:
         """One time step of ``dt`` [s]: roots, bodies and pinned cloth go to their places at ``frame``."""

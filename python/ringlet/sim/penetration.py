@@ -16,9 +16,9 @@ PARALLEL = 1e-9  # the sine below which a segment counts as lying in the plane o
 
 
 def penetration_depths(
-    points: NDArray[np.floating], triangles: NDArray[np.int32], corners: NDArray[np.floating]
+    points: NDArray[np.floating], triangles: NDArray[np.int32], corners: NDArray[np.floating], least: float = 0.0
 ) -> Array:
-    """The depth of points inside a closed mesh with those corners [m], 0 outside; shape (n,).
+    """The depth of points inside a closed mesh with those corners [m], 0 outside or up to ``least``; shape (n,).
 
     Points behind their nearest triangle are candidates; those with a winding number above ½ are inside.
     """
@@ -27,7 +27,7 @@ def penetration_depths(
     places, surface = np.asarray(points[near], np.float64), np.asarray(corners, np.float64)
     triangle, barycentric, distance = _core.bind_roots(surface, triangles, places)
     foot, axes = _core.root_frames(surface, triangles, triangle, barycentric)
-    behind = np.flatnonzero(np.einsum("ni,ni->n", places - foot, axes[:, :, 2]) < 0.0)
+    behind = np.flatnonzero((np.einsum("ni,ni->n", places - foot, axes[:, :, 2]) < 0.0) & (distance > least))
     inside = behind[winding_numbers(places[behind], surface[triangles]) > 0.5]
     depth[near[inside]] = distance[inside]
     return depth

@@ -1,4 +1,4 @@
-"""Statistics of a frame: the solver's reports of its substeps, summed up."""
+"""Statistics of a frame: the solver's reports of its substeps, summed up. Those of the result are in ``written.py``."""
 
 from __future__ import annotations
 
@@ -67,8 +67,6 @@ def _of_strands(reports: list[dict[str, NDArray[np.float64]]], locks: NDArray[np
         "line_search_cuts": total("cuts"),
         "residual": worst("residual"),
         "energy": {name: float(last[name].sum()) for name in ("stretch", "bend", "twist", "gravity", "kinetic")},
-        "max_stretch": worst("max_stretch"),
-        "worst_lock": int(locks[int(last["max_stretch"].argmax())]),
         "flips": total("flips"),
         "winding_changes": total("winding_changes"),
         "too_straight": total("too_straight"),
