@@ -328,6 +328,18 @@ def test_maps_regions_and_drawn_guides_of_a_host_reach_the_recipe(host):
     np.testing.assert_allclose(back.arrays["guides/points"], grown["guides/points"], atol=1e-5)
 
 
+def test_recipes_whose_names_become_alike_are_variants_of_their_own(host):
+    host.send_head()
+    names = ["Kim curls", "Kim_curls", "base", "Kim.curls"]
+    longer = [RECIPE.replace("length = 5", f"length = {6 + k}") for k in range(4)]
+    texts = [{**recipe(text), "name": f"{name}.recipe.toml"} for name, text in zip(names, longer, strict=True)]
+    answer = host.ask("write_groom", recipe=recipe(), file="groom.usdc", variants=texts).header
+    assert answer["variants"] == ["Kim_curls_2", "Kim_curls", "base_2", "Kim_curls_3"]
+    lengths = [ringlet.read_groom(answer["path"], variant=name).guides.lengths().mean() for name in answer["variants"]]
+    base = ringlet.read_groom(answer["path"]).guides.lengths().mean()
+    np.testing.assert_allclose(np.divide(lengths, base), [1.2, 1.4, 1.6, 1.8], rtol=1e-3)
+
+
 def test_a_canceled_shot_is_resumed_to_the_same_bits(host):
     head = ball()
     turn = np.stack([head["points"] + np.float32([0.01 * k, 0, 0]) for k in range(6)])

@@ -222,6 +222,12 @@ def flat(mesh):
     return mesh
 
 
+def test_a_pin_to_one_of_two_colliders_of_a_name_is_refused():
+    floors = [Obstacle(floor(), still(floor()))] * 2
+    with pytest.raises(UserError, match=r"pin\[0\].to is 'floor', which is the name of 2 colliders"):
+        simulated(garment(pin=[{"to": "floor"}]), obstacles=floors)
+
+
 @pytest.mark.parametrize(
     ("make", "words"),
     [

@@ -16,6 +16,7 @@ from .refused import Refused
 
 # Modifiers that change the topology. Ringlet wants the points of the mesh itself, moved by the others.
 GENERATING = {"SUBSURF", "MULTIRES", "MIRROR", "ARRAY", "SOLIDIFY", "BEVEL", "DECIMATE", "REMESH", "TRIANGULATE"}
+UV = "st"  # what texture coordinates are called in the file
 IN_REGION = 0.5  # mean weight of a face that belongs to the region of a vertex group
 
 Arrays = dict[str, np.ndarray]
@@ -24,7 +25,8 @@ Arrays = dict[str, np.ndarray]
 def map_names(head: bpy.types.Object) -> tuple[list[str], list[str]]:
     """Names of maps, all different: of the vertex groups of a head, and of its images, as it lists both."""
     groups = [group.name for group in head.vertex_groups]
-    found = distinct([*groups, *(one.image.name for one in head.ringlet.images if one.image)])
+    names = [UV, *groups, *(one.image.name for one in head.ringlet.images if one.image)]
+    found = distinct(names)[1:]
     return found[: len(groups)], found[len(groups) :]
 
 

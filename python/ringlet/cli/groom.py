@@ -39,12 +39,14 @@ def groom(
     with ringlet.Run("groom", report) as run, shown_progress() as progress:
         for path in (recipe, *(variant or ())):
             ringlet.check_place(output, ringlet.read_recipe(path).named_files())
+        files = dict[str, Path]()
+        for path in variant or ():
+            name = path.name.removesuffix(".toml").removesuffix(".recipe")
+            if (other := files.setdefault(name, path)) != path:
+                raise ringlet.UserError(f"--variant: {path} and {other} are both called '{name}'; rename one of them")
         with run.stage("groom", output):
             groom = ringlet.build_groom(recipe, progress=progress)
-            variants = {
-                path.name.removesuffix(".toml").removesuffix(".recipe"): ringlet.build_groom(path, progress=progress)
-                for path in variant or ()
-            }
+            variants = {name: ringlet.build_groom(path, progress=progress) for name, path in files.items()}
             ringlet.write_groom(groom, output, variants=variants)
         for conflict in [line for made in (groom, *variants.values()) for line in made.conflicts]:
             run.warn(conflict)

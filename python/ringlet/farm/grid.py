@@ -14,6 +14,7 @@ from typing import Any, get_args
 
 from ringlet.data.errors import UserError
 from ringlet.data.explain import Location, did_you_mean, setting_name
+from ringlet.data.names import folded
 from ringlet.data.settings import Section, read_toml
 from ringlet.data.toml import to_toml
 from ringlet.shot import Shot, parse_shot
@@ -120,9 +121,17 @@ def folder_name(settings: dict[str, Any]) -> str:
     """Folder name with the settings and their values; contains no path separators."""
     text = ",".join(f"{name}={_plain_text(value)}" for name, value in settings.items()) or "as-it-is"
     plain = re.sub(r"[^A-Za-z0-9._=,+-]", "_", text)
-    if plain == text and len(plain) <= MAX_NAME:
+    if plain == text and len(plain) <= MAX_NAME and all(map(_is_plain, settings.values())):
         return plain
-    return f"{plain[: MAX_NAME - 10]}-{hashlib.sha256(text.encode()).hexdigest()[:8]}"
+    exact = to_toml({name: {"value": value} for name, value in settings.items()})
+    return f"{plain[: MAX_NAME - 10]}-{hashlib.sha256(exact.encode()).hexdigest()[:8]}"
+
+
+def _is_plain(value: Any) -> bool:
+    """Whether no other value gives the same name of a folder, also on a disk that ignores case."""
+    if not isinstance(value, str):
+        return True
+    return _value(value) == value and folded(value) == value and not set(value) & set(",=") and not value.endswith(".")
 
 
 def _plain_text(value: Any) -> str:

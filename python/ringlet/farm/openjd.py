@@ -6,7 +6,6 @@ combination of settings; the second writes the page that compares them.
 
 from __future__ import annotations
 
-import itertools
 import json
 import re
 from collections.abc import Sequence
@@ -15,6 +14,7 @@ from typing import Any
 
 from ringlet.data.errors import UserError
 from ringlet.data.files import replacing
+from ringlet.data.names import distinct, identifier
 from ringlet.data.toml import to_toml
 from ringlet.farm.grid import Choice
 from ringlet.farm.task import TaskOptions
@@ -87,11 +87,11 @@ def _arguments(options: TaskOptions) -> list[str]:
 
 def _names(choices: Sequence[Choice]) -> list[str]:
     """Valid and unique parameter names of the settings."""
-    names: list[str] = []
-    for choice in choices:
-        name = re.sub(r"[^A-Za-z0-9_]+", "_", choice.name).strip("_")[: MAX_NAME - 4]
-        names.append(next(n for k in itertools.count(1) if (n := name if k == 1 else f"{name}_{k}") not in names))
-    return names
+    return distinct([choice.name for choice in choices], lambda name: _parameter(name)[: MAX_NAME - 4])
+
+
+def _parameter(name: str) -> str:
+    return identifier(re.sub(r"[^A-Za-z0-9_]+", "_", name).strip("_"))
 
 
 def _text(value: Any) -> str:

@@ -13,6 +13,7 @@ from ringlet.data.accessory import Accessory
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.groom import GROOM, HAIR_SHARE, SECTION, STRAND_PROFILE, Groom
+from ringlet.data.names import unique
 from ringlet.data.pigment import DEFAULT_COLOR, HAIR_COLORS, MELANIN, REDNESS, USUAL_FIBER
 from ringlet.groom.named import MOST_GROOMS
 from ringlet.groom.recipe import Recipe
@@ -114,10 +115,11 @@ def with_each(groom: Groom, changed: Callable[[Groom], Groom]) -> Groom:
 
 def _accessories(grooms: Mapping[str, Groom]) -> list[Accessory]:
     """What all grooms wear, on the points of the joined locks, with names that are unique."""
-    worn, first = [], 0
+    worn, first = list[Accessory](), 0
     for name, groom in grooms.items():
         for one in groom.accessories:
-            worn.append(Accessory(replace(one.mesh, name=f"{name}_{one.mesh.name}"), one.vertices + first))
+            unused = unique(f"{name}_{one.mesh.name}", [other.mesh.name for other in worn])
+            worn.append(Accessory(replace(one.mesh, name=unused), one.vertices + first))
         first += len(groom.locks.points)
     return worn
 

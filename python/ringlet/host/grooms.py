@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ from ringlet import api
 from ringlet.api.progress import Progress
 from ringlet.data.curves import Curves
 from ringlet.data.groom import Groom
+from ringlet.data.names import distinct
 from ringlet.data.pigment import (
     AZIMUTHAL_ROUGHNESS,
     DEFAULT_COLOR,
@@ -95,11 +97,11 @@ def write(request: requests.WriteGroom, progress: Progress) -> dict[str, Any]:
     """Writes the groom of a recipe, with others as its variants, as USD."""
     recipe = texts.apply("recipe", request.recipe, request.folder).model
     made = api.build_groom(recipe, progress=progress)
+    stems = [one.name.removesuffix(".toml").removesuffix(".recipe") for one in request.variants]
+    names = distinct(["base", *stems], lambda name: re.sub(r"[^\w-]", "_", name) or "_")[1:]  # as USD takes them
     variants = {
-        one.name.removesuffix(".toml").removesuffix(".recipe"): api.build_groom(
-            texts.apply("recipe", one, request.folder).model, progress=progress
-        )
-        for one in request.variants
+        name: api.build_groom(texts.apply("recipe", one, request.folder).model, progress=progress)
+        for name, one in zip(names, request.variants, strict=True)
     }
     path = request.folder / request.file
     api.write_groom(made, path, variants=variants)

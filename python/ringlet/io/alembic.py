@@ -23,6 +23,7 @@ from ringlet.data.errors import UserError
 from ringlet.data.files import replacing
 from ringlet.data.hair_scene import CurveSet, HairScene
 from ringlet.data.mesh import Clip, Mesh
+from ringlet.data.names import unique
 from ringlet.data.reads import record
 from ringlet.data.regular import check_regular
 from ringlet.data.stage import StageSpace
@@ -328,22 +329,18 @@ def _write(library: SimpleNamespace, scene: HairScene, path: Path, space: StageS
         abc.OInt16Property(properties, f"groom_version_{name}").setValue(value)
     abc.OStringProperty(properties, "groom_tool").setValue("Ringlet")
     root = geom.OXform(top, "groom")
-    taken = set[str]()
+    taken = list[str]()
     for one in scene.sets:
-        _write_curves(library, root, _unique(one.name, taken), one, scene.frames, times, space)
+        taken.append(unique(_last_word(one.name), taken))
+        _write_curves(library, root, taken[-1], one, scene.frames, times, space)
     for mesh, clip in scene.bodies:
-        _write_body(library, root, _unique(mesh.name, taken), (mesh, clip), scene.frames, times, space)
+        taken.append(unique(_last_word(mesh.name), taken))
+        _write_body(library, root, taken[-1], (mesh, clip), scene.frames, times, space)
 
 
-def _unique(name: str, taken: set[str]) -> str:
-    """A name of an object that is not taken: the last word of a path, without what Alembic reserves."""
-    stem = name.replace("/", " ").split()[-1] if name.strip() else "object"
-    found, number = stem, 1
-    while found in taken:
-        number += 1
-        found = f"{stem}_{number}"
-    taken.add(found)
-    return found
+def _last_word(name: str) -> str:
+    """The last word of a path, without what Alembic reserves."""
+    return next(reversed(name.replace("/", " ").split()), "object")
 
 
 def _place(library: SimpleNamespace, root: Any, name: str) -> tuple[Any, str]:

@@ -75,6 +75,11 @@ class PinnedVertices:
         if name not in names:
             hint = did_you_mean(name, sorted(set(names))) if names else "; there is none"
             raise UserError(f"{self._where}.to is '{name}', which is no collider{hint}")
+        if names.count(name) > 1:
+            raise UserError(
+                f"{self._where}.to is '{name}', which is the name of {names.count(name)} colliders; give the one that "
+                "is meant a [[collider]] of its own, with `mesh` and another `name`"
+            )
         return names.index(name)
 
     def _near(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from typing import Any
 
+from ringlet.data.names import unique
 from ringlet.groom import Recipe
 from ringlet.viewer.protocol import Place
 
@@ -13,8 +14,7 @@ def new_name(place: Place, recipe: Recipe, used: Collection[str]) -> str:
     """An unused name after a setting: ``guides_length``, ``scraggle_mask``, ``guides_part_line``."""
     stage = recipe.shape[int(place[1])].op if place[0] == "shape" else str(place[0])
     parts = [str(part) for part in place[2 if place[0] == "shape" else 1 :] if part not in ("map", "curve")]
-    name = "_".join([stage, *parts])
-    return next(one for one in (name, *(f"{name}_{k}" for k in range(2, 1000))) if one not in used)
+    return unique("_".join([stage, *parts]), used)
 
 
 def value_at(recipe: Recipe, place: Place) -> object:

@@ -48,11 +48,14 @@ def write_deformable_scene(scene: HairScene, rod: Rod, path: Path, space: StageS
         UsdPhysics.SetStageKilogramsPerUnit(stage, 1.0)
         UsdGeom.Xform.Define(stage, GROOM)
         material = _define_material(stage, f"{GROOM}/materials/rod", rod, space.meters_per_unit)
-        taken = ["materials"]
+        taken, rods = ["materials"], list[tuple[Usd.Prim, Curves]]()
         for one in scene.sets:
-            name = identifier(one.name, taken)
-            taken += [name, f"{name}_roots"]
-            _define_rods(stage, f"{GROOM}/{name}", one.curves, rod, material, space, path)
+            taken.append(identifier(one.name, taken))
+            prim = _define_rods(stage, f"{GROOM}/{taken[-1]}", one.curves, rod, material, space, path)
+            rods.append((prim, one.curves))
+        for prim, curves in rods:  # after all names that are of the scene
+            taken.append(identifier(f"{prim.GetName()}_roots", taken))
+            _fix_roots(stage, f"{GROOM}/{taken[-1]}", prim, curves)
         for mesh, _ in scene.bodies:
             taken.append(identifier(mesh.name.split("/")[-1].split(" ")[-1], taken))
             prim = define_mesh(stage, f"{GROOM}/{taken[-1]}", mesh, space, path)
@@ -80,7 +83,7 @@ def _define_material(stage: Usd.Stage, path: str, rod: Rod, unit: float) -> UsdS
 
 def _define_rods(
     stage: Usd.Stage, path: str, curves: Curves, rod: Rod, material: UsdShade.Material, space: StageSpace, file: Path
-) -> None:
+) -> Usd.Prim:
     defined = UsdGeom.BasisCurves.Define(stage, path)
     defined.CreateTypeAttr(UsdGeom.Tokens.linear)
     defined.CreateWrapAttr(UsdGeom.Tokens.nonperiodic)
@@ -101,11 +104,12 @@ def _define_rods(
     _set(prim, "thicknesses", Types.FloatArray, [diameter])
     _set(prim, "thicknesses:elementType", Types.Token, "constant")
     UsdShade.MaterialBindingAPI.Apply(prim).Bind(material, materialPurpose="physics")
-    _fix_roots(stage, f"{path}_roots", prim, curves, points)
+    return prim
 
 
-def _fix_roots(stage: Usd.Stage, path: str, prim: Usd.Prim, curves: Curves, points: Vt.Vec3fArray) -> None:
+def _fix_roots(stage: Usd.Stage, path: str, prim: Usd.Prim, curves: Curves) -> None:
     """Fixes the first points of each curve to the transform of the groom, in whose frame their places are."""
+    points = UsdGeom.PointBased(prim).GetPointsAttr().Get()
     rows = (curves.offsets[:-1, None] + np.arange(ROOT_POINTS)).ravel()
     to_groom = UsdGeom.XformCache().ComputeRelativeTransform(prim, prim.GetParent())[0]
     fixed = stage.DefinePrim(path, "PhysicsAttachment")

@@ -36,6 +36,7 @@ from ringlet.data.stage import StageSpace
 from ringlet.io.usd.curves import define_curves, own_curves, set_display_color, set_points, set_rest, set_roots
 from ringlet.io.usd.damage import check_bytes
 from ringlet.io.usd.mesh import define_mesh, mesh_at, read_usd_mesh, select_mesh
+from ringlet.io.usd.names import identifier
 from ringlet.io.usd.offsets import NAME as OFFSETS_NAME
 from ringlet.io.usd.offsets import define_offsets, offsets_at
 from ringlet.io.usd.place import Place, rounded
@@ -91,7 +92,7 @@ def write_groom(groom: Groom, path: Path | str, variants: Mapping[str, Groom] | 
             _define(stage, groom, space, path)
         else:
             choice = root.GetVariantSets().AddVariantSet(VARIANTS)
-            for name, variant in {BASE: groom, **variants}.items():
+            for name, variant in ((BASE, groom), *variants.items()):
                 _check_variant(name, variant, groom)
                 choice.AddVariant(name)
                 choice.SetVariantSelection(name)
@@ -146,9 +147,10 @@ def _define(stage: Usd.Stage, groom: Groom, space: StageSpace, file: Path | str)
     _define_guides(stage, GUIDES, groom.guides, groom, space, file)
     if groom.offsets is not None:
         define_offsets(stage, f"{GROOM}/{OFFSETS_NAME}", groom.offsets)
+    taken = list[str]()
     for accessory in groom.accessories:
-        place = f"{ACCESSORIES}/{accessory.mesh.name.replace(' ', '_')}"
-        prim = define_mesh(stage, place, accessory.mesh, space, file)
+        taken.append(identifier(accessory.mesh.name, taken))
+        prim = define_mesh(stage, f"{ACCESSORIES}/{taken[-1]}", accessory.mesh, space, file)
         _set(prim, "vertices", Types.IntArray, Vt.IntArray.FromNumpy(accessory.vertices.astype(np.int32)))
 
 
@@ -163,6 +165,8 @@ def _hide(stage: Usd.Stage, groom: Groom) -> None:
 
 
 def _check_variant(name: str, variant: Groom, groom: Groom) -> None:
+    if variant is not groom and name == BASE:
+        raise UserError(f"variant '{name}': is what the groom itself is called in the file; choose another name")
     if not re.fullmatch(r"[\w-]+", name):
         raise UserError(f"variant '{name}': is no name for USD; use letters, digits, _ and - only")
     scalp, variant_scalp = ((g.scalp_file and g.scalp_file.resolve(), g.scalp_prim, g.region) for g in (groom, variant))

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from pxr import Usd, UsdGeom, Vt
 
 from ringlet.data.errors import UserError
+from ringlet.data.names import distinct
 from ringlet.data.stage import StageSpace
 from ringlet.io.usd.names import identifier, keep_name
 from ringlet.io.usd.stage import new_stage, writing
@@ -105,10 +106,9 @@ def _define(stage: Usd.Stage, path: str, mesh: PolygonMesh, first_frame: int) ->
         defined.CreateExtentAttr().Set(UsdGeom.PointBased.ComputeExtent(value), time)
     if mesh.uv is not None:
         set_primvar(prim, "st", tokens.faceVarying, mesh.uv.astype(np.float32), Types.TexCoord2fArray)
-    names: list[str] = []
-    for name, values in mesh.maps.items():
-        names.append(identifier(name, names))
-        set_primvar(prim, names[-1], tokens.vertex, values.astype(np.float32))
+    names = distinct(["st", *mesh.maps])[1:]
+    for name, values in zip(names, mesh.maps.values(), strict=True):
+        set_primvar(prim, name, tokens.vertex, values.astype(np.float32))
     subsets: list[str] = []
     for name, faces in mesh.regions.items():
         subsets.append(identifier(name, subsets))

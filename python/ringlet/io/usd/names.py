@@ -6,6 +6,8 @@ from collections.abc import Collection
 
 from pxr import Sdf, Usd
 
+from ringlet.data.names import unique
+
 ORIGINAL = "ringlet:name"
 
 
@@ -13,7 +15,7 @@ def identifier(name: str, taken: Collection[str] = ()) -> str:
     """Returns the name with every character that USD refuses replaced, and with a number where it is taken."""
     valid = "".join(letter if Sdf.Path.IsValidIdentifier(f"_{letter}") else "_" for letter in name)
     valid = valid if Sdf.Path.IsValidIdentifier(valid) else f"_{valid}"
-    return next(one for one in (valid, *(f"{valid}_{k}" for k in range(2, len(taken) + 3))) if one not in taken)
+    return unique(valid, taken)
 
 
 def keep_name(of: Usd.Object, name: str) -> None:
