@@ -29,8 +29,8 @@ SolverEffort Newton::minimise(View<Vec3> start, const NewtonSettings &settings, 
         solve(settings, x, report, iteration);
         if (number < settings.iterations) set_full_step(iteration);
         choose_path(x, iteration);
-        // A strand that could hardly move is limited near the pair alone: in the first iteration so that the rest of it
-        // follows, and in extra ones since a single pair could hold it for good. Between them its shape counts.
+        // A strand that could hardly move is limited near the pair alone, so that the rest of it follows in the first
+        // iteration. In extra ones a single pair could hold it for good. Between these its shape counts.
         iteration.move =
             limit_path(objective_, configuration_, x,
                        {number > 0 && number < settings.iterations, number + 1 >= settings.iterations, iteration.cautious},
