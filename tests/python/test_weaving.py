@@ -139,7 +139,7 @@ def test_cached_hairs_of_a_strand_follow_its_width():
             "weaves 3 strands; a fishtail has 5, 7, 9 or 11",
         ),
         ("strands = 3", BRAID, "points = 60", "locks.points is 60: too few for the 5.3 turns of braid; set it to 107"),
-        ("gap = 4", "", "count = 100\npoints = 8", "leaves no hair: its gap is as wide as its size"),
+        ("gap = 4", "", "count = 100\npoints = 8", "leaves no hair: its gap is as wide as its size, or its mask"),
     ],
 )
 def test_what_cannot_be_woven_is_refused_with_a_remedy(sections, shape, locks, message):

@@ -56,6 +56,12 @@ class Edge(Section):
     def _one_source(self) -> Edge:
         if bool(self.lines) == (self.region is not None):
             raise refuse("needs either 'lines' or a 'region'; give one of them")
+        if self.both_sides and self.region is not None:
+            raise refuse("has 'both_sides', which is for 'lines'; name a region that has both, or take it out")
+        for name in ("width", "turn"):
+            value: Ramped = getattr(self, name)
+            if varied := [what for what in ("vary", "noise", "map", "region", "lock") if getattr(value, what)]:
+                raise refuse(f"has a {name} with '{varied[0]}', but it varies along the line alone; give it a ramp")
         return self
 
     def of(self, scalp: Scalp, helper: Callable[[str, str], Curves], seed: int) -> EdgeScalp:

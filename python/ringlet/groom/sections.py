@@ -255,7 +255,7 @@ class Division:
         grow = np.zeros(len(roots), np.bool_)
         for _ in range(NEARER):
             wanted = (roots.points[:, None] + offsets).reshape(-1, 3)
-            grow = self.grows(wanted).reshape(len(roots), strands).all(axis=1)
+            grow = np.asarray(self.grows(wanted).reshape(len(roots), strands).all(axis=1))
             offsets[~grow] *= 0.5
         roots, places = roots.take(grow), (roots.points[:, None] + offsets)[grow]
         region = np.ascontiguousarray(scalp.region, np.int32)

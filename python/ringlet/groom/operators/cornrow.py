@@ -31,7 +31,8 @@ ROOTS_APART = 1.8  # of a row's strands, in radii of a strand
 class Cornrow(Woven):
     """Braids the strands of each section on the scalp, along the middle of the section from its front to its back, or
     along a drawn ``path``; beyond its end the braid hangs as a tail. Hair of the section lies flat towards the braid
-    and joins it on its side, ``feed`` behind where it grows. In a shot the braid is pinned to the scalp.
+    and joins it on its side, ``feed`` behind where it grows. In a shot the braid is pinned to the scalp. A row is
+    braided where ``blend`` times ``mask`` is over a half at its roots.
 
     The strands are as in ``braid``, with x across the row and z along the normal of the scalp. The braid lies between
     the scalp and ``height``.

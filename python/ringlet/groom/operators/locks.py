@@ -120,7 +120,10 @@ class Locks(Operator):
         strand[REACH] = reaches(division, scalp, strand_triangle, strand_barycentric, strand[SECTION])
         strand_ids = STRAND_IDS + IDS_PER_SECTION * strand[SECTION].astype(np.int64) + strand[STRAND]
         if not len(strand_ids) and not loose.any():
-            raise UserError("locks.sections leaves no hair: its gap is as wide as its size; make the gap smaller")
+            raise UserError(
+                "locks.sections leaves no hair: its gap is as wide as its size, or its mask has no section; change one "
+                "of them"
+            )
         return (
             np.concatenate([ids[loose], strand_ids]),
             np.concatenate([triangle[loose], strand_triangle]),

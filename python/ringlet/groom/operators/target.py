@@ -60,6 +60,8 @@ class ToTarget(Shape):
     def _one_target(self) -> ToTarget:
         if self.line is not None and self.mesh is not None:
             raise refuse("has a line and also a mesh; give one of them")
+        if self.mesh is not None and self.toward != type(self).model_fields["toward"].default:
+            raise refuse("has 'toward', but locks cross a mesh from any side; take it out, or the mesh")
         return self
 
     def path(self, points: NDArray, curves: Curves, context: Context) -> tuple[NDArray, NDArray]:
