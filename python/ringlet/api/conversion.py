@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet.data import limits
+from ringlet.data.bounds import check_curves
 from ringlet.data.errors import UserError
 from ringlet.data.files import check_place
 from ringlet.data.reads import recorded
@@ -79,6 +80,10 @@ def convert(
         space = StageSpace(unit or default.meters_per_unit, up or default.up_axis, scene.space.fps)
         scene = replace(scene, frames=_within(scene, frames, source), bodies=scene.bodies if bodies else [])
         scene.sets = [_thinned(one, fraction, wider, points) for one in _chosen(scene, only, source)]
+        has_unit = io.format_of(source).space is None
+        remedy = "write the file again, in its unit" if has_unit else "give the unit of the file with --from-unit"
+        for one in scene.sets if kind.name == "USD" else ():
+            check_curves(one.curves, one.curves.points, one.curves.roots, f"{source}: {one.name}", remedy)
         one_pose = frames is not None and not kind.several
         if one_pose:
             scene = scene.posed(scene.frames[0])

@@ -16,13 +16,14 @@ REACH_TIMES = 100.0  # or so many times the diagonal of the head's bounding box,
 WORLD = 1e7  # largest coordinate [m]
 
 
-def check_positions(points: NDArray, around: NDArray, where: str, name: Callable[[int], str]) -> None:
+def check_positions(points: NDArray, around: NDArray, where: str, name: Callable[[int], str], remedy: str) -> None:
     """Raises UserError for a position that is not finite or too far from the head.
 
     points: positions [m], shape (n, 3)
     around: points of the head [m], shape (k, 3)
     where:  the result and its frame, for the message
     name:   gives the name of a row of ``points``
+    remedy: what to do, where the points come from
     """
     if not len(points):
         return
@@ -35,18 +36,18 @@ def check_positions(points: NDArray, around: NDArray, where: str, name: Callable
     place = ", ".join(f"{x:.4g}" for x in points[row])
     raise UserError(
         f"{where}: {name(row)} is at ({place}) m, {outside.sum()} of {len(points)} points are wrong; must be "
-        f"finite and at most {reach:.3g} m from the head, so nothing is written: undo the last change of settings"
+        f"finite and at most {reach:.3g} m from the head, so nothing is written: {remedy}"
     )
 
 
-def check_curves(curves: Curves, points: NDArray, around: NDArray, where: str) -> None:
+def check_curves(curves: Curves, points: NDArray, around: NDArray, where: str, remedy: str) -> None:
     """``check_positions`` of the points of curves."""
 
     def name(row: int) -> str:
         curve = int(np.searchsorted(curves.offsets, row, side="right") - 1)
         return f"curve {curves.ids[curve]}, point {row - curves.offsets[curve]}"
 
-    check_positions(points, around, where, name)
+    check_positions(points, around, where, name, remedy)
 
 
 def _box(around: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:

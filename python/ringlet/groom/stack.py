@@ -145,7 +145,7 @@ def make_groom(
             )
             before = curves
             curves, key = _run(operator, curves, key, context, memory)
-            check_curves(curves, curves.points, scalp.points, name)
+            check_curves(curves, curves.points, scalp.points, name, "lower its settings, or leave it out")
             if isinstance(operator, Shape):
                 worn += _worn(operator, before, curves, key, context, memory)
             if isinstance(operator, Displacement):

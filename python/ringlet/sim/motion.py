@@ -32,6 +32,8 @@ from ringlet.sim.variation import material_factors
 from ringlet.sim.worn import worn_factors
 from ringlet.sim.written import Written
 
+UNSTABLE = "raise solver.substeps, or lower the forces and the speed of the head"
+
 
 def make_strands(
     shot: Shot,
@@ -155,10 +157,10 @@ class Motion:
     def _check_positions(self, frame: float) -> None:
         """Refuses positions that are not finite or far from the head."""
         head = self.clip.at(frame)
-        check_curves(self.cores.whole.locks, self.points(frame), head, f"sim: locks at frame {frame:g}")
+        check_curves(self.cores.whole.locks, self.points(frame), head, f"sim: locks at frame {frame:g}", UNSTABLE)
         for garment in self.garments:
             where = f"sim: cloth '{garment.name}' at frame {frame:g}"
-            check_positions(garment.cloth.positions, head, where, lambda row: f"vertex {row}")
+            check_positions(garment.cloth.positions, head, where, lambda row: f"vertex {row}", UNSTABLE)
 
     def begin(self) -> dict[str, Any]:
         """Locks and cloths take over the motion that the clip has at the first frame.

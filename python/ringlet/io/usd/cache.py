@@ -116,6 +116,11 @@ class CacheFile:
                 f"{self._source.path}: has {len(points)} points at frame {frame:g}, its groom {self.size}; "
                 "simulate again"
             )
+        if not np.isfinite(points).all():
+            row = int((~np.isfinite(points)).any(axis=1).argmax())
+            raise UserError(
+                f"{self._source.path}: point {row} of {self.size} is not finite at frame {frame:g}; simulate again"
+            )
         return to_metres(points, self._source.space)
 
     def lag(self, frame: float) -> float:

@@ -24,6 +24,8 @@ DEFAULT = Usd.TimeCode.Default()
 
 Array = NDArray[np.float64]
 
+REMEDY = "check the file or the settings that they come from"
+
 
 def local_points(points: NDArray[np.floating], origin: Array, space: StageSpace) -> Vt.Vec3fArray:
     """Points [m] relative to an origin [m], as a value in the unit and axes of a file."""
@@ -85,11 +87,13 @@ class Place:
     def _check(self, points: NDArray[np.floating], time: Usd.TimeCode, around: NDArray[np.floating] | None) -> None:
         where = self._where if time.IsDefault() else f"{self._where} at frame {time.GetValue():g}"
         if self._curves is None:
-            check_positions(points, points if around is None else around, where, lambda row: f"point {row}")
+            check_positions(points, points if around is None else around, where, lambda row: f"point {row}", REMEDY)
             return
         if points.shape != self._curves.points.shape:
             raise UserError(f"{where}: has {len(points)} points for curves of {len(self._curves.points)}; not written")
-        check_curves(self._curves, points, points[self._curves.offsets[:-1]] if around is None else around, where)
+        check_curves(
+            self._curves, points, points[self._curves.offsets[:-1]] if around is None else around, where, REMEDY
+        )
 
     def _move(self, origin: Array, time: Usd.TimeCode) -> None:
         operation = self._operation()
