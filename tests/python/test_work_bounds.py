@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 from ringlet.groom.scalp import Scalp
@@ -52,3 +55,22 @@ def test_a_spacing_that_takes_too_many_samples_is_refused(text, setting):
     with pytest.raises(UserError, match=rf"{setting} puts .* samples on ball.*at most 1,000,000") as caught:
         make_groom(parse_recipe("ringlet = 2\n" + text), ball(radius=1.0))
     assert "\n" not in str(caught.value)
+
+
+BEYOND_MEMORY = """
+import os, sys, numpy as np
+from ringlet.cli import app
+memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+def groom(*_, **__):
+    kept = [np.empty(int(0.6 * memory), np.uint8) for _ in range(2)]  # none of it is touched
+app.ringlet.read_recipe = groom
+sys.argv = ["ringlet", "groom", "r.recipe.toml", "-o", "g.usdc"]
+app.main()
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="Linux gives memory that it does not have")
+def test_what_does_not_fit_in_memory_is_refused_in_one_line(tmp_path):
+    done = subprocess.run([sys.executable, "-c", BEYOND_MEMORY], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 2
+    assert done.stderr.startswith("error: memory ran out") and done.stderr.count("\n") == 1

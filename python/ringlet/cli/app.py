@@ -173,4 +173,17 @@ def main() -> None:
     """Entry point of the command ``ringlet``."""
     if isinstance(sys.stdout, TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")  # names of files may be no text
+    bound_memory()
     app()
+
+
+def bound_memory() -> None:
+    """Lets allocations beyond the machine's memory fail and be reported; Linux would end the process without a word."""
+    if sys.platform != "linux":
+        return
+    import resource
+
+    soft, hard = resource.getrlimit(resource.RLIMIT_DATA)
+    memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    least = min([memory, *(limit for limit in (soft, hard) if limit != resource.RLIM_INFINITY)])
+    resource.setrlimit(resource.RLIMIT_DATA, (least, hard))

@@ -108,11 +108,12 @@ void fill_hairs(const LockTable &lock, const HairSpan &hairs) {
             along[k] = at - static_cast<float>(i < last ? i : last);
         }
 
-        Float4 root{hairs.root[3 * hair], hairs.root[3 * hair + 1], hairs.root[3 * hair + 2], 0.0f};
-        if (join > 0.0f) {
-            const int i = std::min(static_cast<int>(begin), last);
-            root += row(lock.segments[0].c0) - on_lock(lock.segments[i], begin - static_cast<float>(i), 0.0f, 0.0f);
-        }
+        const auto joined = [&](const LockTable &of, float at) { // place of a lock where the hair joins it
+            const int i = std::min(static_cast<int>(at), of.last);
+            return join > 0.0f ? on_lock(of.segments[i], at - static_cast<float>(i), 0.0f, 0.0f) : row(of.segments[0].c0);
+        };
+        const Float4 from{hairs.root[3 * hair], hairs.root[3 * hair + 1], hairs.root[3 * hair + 2], 0.0f};
+        const Float4 root = from + (row(lock.segments[0].c0) - joined(lock, begin));
         float *result = hairs.result + 3L * n * hair;
         // A row of four also writes the first number of the next point, which is written after it.
         const auto put = [&](int k, Float4 point) { std::memcpy(result + 3 * k, &point, k + 1 < n ? 16 : 12); };
@@ -123,8 +124,8 @@ void fill_hairs(const LockTable &lock, const HairSpan &hairs) {
         }
         const float share = hairs.share[hair];
         const LockTable &other = hairs.locks[hairs.other[hair]];
-        const Float4 other_root = root + row(lock.segments[0].c0) - row(other.segments[0].c0);
         const float rescale = static_cast<float>(other.last) / static_cast<float>(lock.last);
+        const Float4 other_root = from + (row(lock.segments[0].c0) - joined(other, begin * rescale));
         for (int k = 0; k < n; ++k) {
             const float at = (static_cast<float>(segment[k]) + along[k]) * rescale;
             int i = static_cast<int>(at);
