@@ -19,6 +19,7 @@ from ringlet.data.binding import check_roots, root_places
 from ringlet.data.detail import LEVELS, screen_share
 from ringlet.data.errors import UserError
 from ringlet.data.reads import recorded
+from ringlet.deform.lengths import HairLengths
 
 if TYPE_CHECKING:
     from ringlet.data.groom import Groom
@@ -122,7 +123,9 @@ def write_hairs(
     on_demand:  writes what a renderer makes hairs of, in place of their points
     velocities: writes those of hairs in motion too, in units per second, which doubles the size of the file
     variant:    of the groom, in place of the one that is selected in it, or that the cache was made of
-    measures:   receives the entries of ``measure_hairs``, and ``fraction``, where a camera chose it
+    measures:   receives the entries of ``measure_hairs``; ``fraction``, where a camera chose it; and of hairs in motion
+                with points ``length_change``, the largest fraction by which one gets longer or shorter than in the
+                groom, and its ``length_change_frame``
 
     Returns how many ``locks``, ``hairs``, ``points`` and ``frames`` there are; hairs and points of the finest level.
     """
@@ -180,11 +183,16 @@ def write_hairs(
                 for level, hairs in enumerate(levels):
                     if cache is None:
                         writer.add(None, hairs.curves.points, around=rest.scalp, level=level)
+                lengths = HairLengths(finest.curves)
                 for at in moments:
                     for level, hairs in enumerate(levels):
                         moved = hairs.deformed(at.locks, at.scalp, surfaces=at.surfaces)
                         writer.add(at.frame, moved, around=at.scalp, level=level)
+                        if level == 0 and at.frame is not None:
+                            lengths.add(at.frame, moved)
                     written = _reported(written, total, progress)
+                if measures is not None and written:
+                    measures |= {"length_change": lengths.change, "length_change_frame": lengths.frame}
     return {
         "locks": len(locks.locks),
         "hairs": len(finest.curves),

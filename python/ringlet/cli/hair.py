@@ -12,6 +12,8 @@ from ringlet.cli.options import Fraction, Frames, Json, Report, Threads, Variant
 from ringlet.cli.output import density, wrote
 from ringlet.cli.progress import shown_progress
 
+MOST_CHANGE = 0.05  # of the length of a hair that nobody sees
+
 
 def hair(
     groom: Annotated[
@@ -116,5 +118,10 @@ def hair(
     if not as_json:
         if "fraction" in measures:
             print(f"{measures['fraction']:.1%} of the hairs, as {camera} sees them on {pixels} pixels")
-        if len(measures) > ("fraction" in measures):
+        if "hairs_per_cm2" in measures or "hairs_per_cm" in measures or "grooms" in measures:
             print(density(measures))
+        if (change := measures.get("length_change", 0.0)) > MOST_CHANGE:
+            print(
+                f"Hairs get up to {change:.0%} longer or shorter than in the groom, most in frame "
+                f"{measures['length_change_frame']:g}: look at them there before you use this result."
+            )
