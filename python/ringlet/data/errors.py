@@ -34,7 +34,7 @@ class UserError(Exception):
     def __init__(self, message: str, fixes: Sequence[Fix] = ()) -> None:
         self.fixes = tuple(fixes)
         line = one_line(message)
-        super().__init__(line if len(line) <= MOST else f"{line[: MOST // 2]}…{line[-MOST // 2 :]}")
+        super().__init__(abbreviated(line))
 
 
 def line_of(error: BaseException) -> str | None:
@@ -43,7 +43,7 @@ def line_of(error: BaseException) -> str | None:
         return str(error)
     if isinstance(error, OSError):
         place = f"{error.filename}: " if error.filename else ""
-        return one_line(f"{place}{error.strerror or error}; check the place and its rights")
+        return abbreviated(one_line(f"{place}{error.strerror or error}; check the place and its rights"))
     if isinstance(error, MemoryError):
         reason = one_line(str(error)) or "of this machine"
         return f"memory ran out ({reason}); ask for fewer locks, hairs, frames or pixels"
@@ -52,8 +52,13 @@ def line_of(error: BaseException) -> str | None:
     if isinstance(error, UnicodeEncodeError) and SURROGATE.search(error.object):
         return one_line(f"{ascii(error.object[:200])[1:-1]}: has a name that is not in UTF-8; rename the file")
     if isinstance(error, RuntimeError) and str(error).startswith("Symlink loop"):  # of pathlib
-        return one_line(f"{error}; check the place")
+        return abbreviated(one_line(f"{error}; check the place"))
     return None
+
+
+def abbreviated(line: str) -> str:
+    """A message with both its ends where it is too long."""
+    return line if len(line) <= MOST else f"{line[: MOST // 2]}…{line[-MOST // 2 :]}"
 
 
 def one_line(message: str) -> str:
