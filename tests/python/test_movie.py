@@ -131,7 +131,7 @@ def test_a_close_up_of_a_clip_follows_no_single_frame():
     [
         (["movie", "STAGE", "-o", "a.avi"], ["a.avi", ".mp4 or .mov"]),
         (["movie", "STAGE", "-o", "a.mp4", "--background", "transparent"], ["a.mp4", "cannot be transparent"]),
-        (["movie", "STAGE", "-o", "a", "--frames", "7:9"], ["has no frames for a movie"]),
+        (["movie", "STAGE", "-o", "a", "--frames", "7:9"], ["has no frame from 7 to 9"]),
         (["movie", "STAGE", "-o", "STAGE"], ["must end in .mp4"]),
         (["turntable", "STAGE", "-o", "a", "--camera", "/cam"], ["--camera has no effect", "leave it out"]),
         (["turntable", "STAGE", "-o", "a", "--views", "0"], ["--views: is '0'", "at least 1"]),

@@ -14,6 +14,7 @@ from ringlet.data import limits
 from ringlet.data.bounds import check_curves
 from ringlet.data.errors import UserError
 from ringlet.data.files import check_place
+from ringlet.data.frames import frames_within
 from ringlet.data.reads import recorded
 from ringlet.data.resampling import Resampling
 from ringlet.data.stage import StageSpace
@@ -78,7 +79,9 @@ def convert(
         if rod is not None:
             default = replace(default, meters_per_unit=1.0)
         space = StageSpace(unit or default.meters_per_unit, up or default.up_axis, scene.space.fps)
-        scene = replace(scene, frames=_within(scene, frames, source), bodies=scene.bodies if bodies else [])
+        scene = replace(
+            scene, frames=frames_within(scene.frames, frames, source), bodies=scene.bodies if bodies else []
+        )
         scene.sets = [_thinned(one, fraction, wider, points) for one in _chosen(scene, only, source)]
         has_unit = io.format_of(source).space is None
         remedy = "write the file again, in its unit" if has_unit else "give the unit of the file with --from-unit"
@@ -152,17 +155,6 @@ def source_space_of(source: Path | str, unit: float | None, up: Literal["Y", "Z"
     if default is None:
         raise UserError(f"{source}: stores its unit and up-axis; leave --from-unit and --from-up out")
     return StageSpace(unit or default.meters_per_unit, up or default.up_axis)
-
-
-def _within(scene: HairScene, frames: tuple[int, int] | None, source: Path | str) -> NDArray[np.float64]:
-    """Frames in a closed range; raises UserError when there are none."""
-    if frames is None:
-        return scene.frames
-    chosen = scene.frames[(scene.frames >= frames[0]) & (scene.frames <= frames[1])]
-    if not len(chosen):
-        held = f"it holds {scene.frames[0]:g} to {scene.frames[-1]:g}" if len(scene.frames) else "nothing in it moves"
-        raise UserError(f"{source}: has no frame from {frames[0]} to {frames[1]}; {held}")
-    return chosen
 
 
 def _chosen(scene: HairScene, only: str | None, source: Path | str) -> list[CurveSet]:

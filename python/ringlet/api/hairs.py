@@ -141,6 +141,9 @@ def write_hairs(
     if cache is None and frames is not None:
         asked = f"{frames[0]}:{frames[1]}"
         raise UserError(f"{groom}: does not move, so it has no frames {asked}; give its cache too, with --cache")
+    if cache is not None:
+        with io.open_cache(cache) as moved:  # before any hair is made
+            moved.within(frames)
     if variant is None and cache is not None:
         variant = read_groom(cache).variant
     locks = read_groom(groom, variant=variant)

@@ -10,6 +10,7 @@ from ringlet.api.pictures import first_frame, lock_points, pose_at, shutter_pose
 from ringlet.api.progress import Progress
 from ringlet.data import limits
 from ringlet.data.errors import UserError
+from ringlet.data.frames import frames_within
 from ringlet.data.picture import PictureSettings
 from ringlet.data.reads import recorded
 
@@ -43,9 +44,9 @@ def write_movie(
 
     stage, path, look = Path(stage), Path(path), PictureSettings.of(settings)
     picture.check_output(path, look)
-    chosen = [float(f) for f in io.read_hair_frames(stage) if frames is None or frames[0] <= f <= frames[1]]
-    if not chosen:
-        raise UserError(f"{stage}: has no frames for a movie; give hairs made with --cache, or other frames")
+    if not len(held := io.read_hair_frames(stage)):
+        raise UserError(f"{stage}: has no frames for a movie; give hairs made with --cache")
+    chosen = frames_within(held, frames, stage).tolist()
     standpoint = None
     if look.camera is None:
         poses = (pose_at(stage, frame) for frame in _reported(chosen, progress))

@@ -14,6 +14,7 @@ from ringlet.api.progress import Progress
 from ringlet.data.camera import Camera
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
+from ringlet.data.frames import frames_within
 from ringlet.data.picture import PictureSettings
 from ringlet.data.reads import recorded
 from ringlet.data.settings import check_name
@@ -84,7 +85,7 @@ def write_touches_picture(
     touches, colors = io.read_touches(stage, frame)
     locks = read_groom(stage).locks
     with io.open_cache(stage) as cache:
-        at = cache.frames[0] if frame is None else frame
+        at = cache.frames[0] if frame is None else cache.within((frame, frame))[0]
         posed_locks, start, cloths = cache.points(at), cache.start, cache.cloth_prims
     places, part = touches.places, 0.009  # of the picture's size
     if show == "gap":
@@ -121,9 +122,9 @@ def write_sheet(
 
     look = PictureSettings.of(settings)
     look.refuse_all_but(SHEET_SETTINGS, "a sheet of small pictures")
-    chosen = [f for f in io.read_hair_frames(Path(stage)) if frames is None or frames[0] <= f <= frames[1]]
-    if not chosen:
-        raise UserError(f"{stage}: has no frames to draw a sheet of; give hairs made with --cache, or other frames")
+    if not len(held := io.read_hair_frames(Path(stage))):
+        raise UserError(f"{stage}: has no frames to draw a sheet of; give hairs made with --cache")
+    chosen = frames_within(held, frames, stage)
     spread = [chosen[i] for i in np.unique(np.linspace(0, len(chosen) - 1, count).round().astype(int))]
     picture.sheet(
         ((frame, *_posed(Path(stage), frame)) for frame in spread),

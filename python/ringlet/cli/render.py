@@ -49,6 +49,12 @@ def render(
     Examples: ringlet render hair.usdc -o still.png --frame 24 --view side · ringlet render hair.usdc --sheet ·
     ringlet render hair.usdc --look-at 50000000 --f-stop 2.8 --light window
     """
+    if sheet and frame is not None:
+        raise ringlet.UserError(f"--frame {frame}: a sheet shows several frames; choose them with --frames")
+    if frames is not None and not sheet:
+        raise ringlet.UserError(
+            f"--frames {frames[0]}:{frames[1]}: a still shows one frame; choose it with --frame, or draw a --sheet"
+        )
     with ringlet.Run("render", report) as run, shown_progress() as progress:
         with run.stage("sheet" if sheet else "still", output):
             if contacts is not None:

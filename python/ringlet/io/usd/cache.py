@@ -16,6 +16,7 @@ from pxr import Sdf, Usd, UsdGeom
 from ringlet.data.accessory import Accessory
 from ringlet.data.cache import Cache, CachedCloth
 from ringlet.data.errors import UserError
+from ringlet.data.frames import frames_within, refuse_gaps
 from ringlet.data.mesh import Mesh
 from ringlet.data.stage import StageSpace
 from ringlet.io.space import to_metres
@@ -150,13 +151,9 @@ class CacheFile:
             return found
 
     def within(self, frames: tuple[int, int] | None) -> NDArray[np.float64]:
-        """Frames in a closed range, all for None; raises UserError when the range has none."""
-        if frames is None:
-            return self.frames
-        chosen = self.frames[(self.frames >= frames[0]) & (self.frames <= frames[1])]
-        if not len(chosen):
-            span = f"{self.frames[0]:g} to {self.frames[-1]:g}"
-            raise UserError(f"{self._source.path}: has no frame from {frames[0]:g} to {frames[1]:g}; it holds {span}")
+        """Frames in a closed range, all for None; raises UserError for a range with frames that are not there."""
+        chosen = frames_within(self.frames, frames, self._source.path)
+        refuse_gaps(chosen, self._source.path, "simulate again, or choose frames without it")
         return chosen
 
     @property

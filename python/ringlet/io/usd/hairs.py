@@ -17,6 +17,7 @@ from pxr import Sdf, Usd, UsdGeom
 
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.errors import UserError
+from ringlet.data.frames import refuse_gaps
 from ringlet.data.groom import GROOM as GROOM_ROW
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Clip
@@ -180,7 +181,9 @@ def _frames(source: Source) -> NDArray[np.float64]:
         samples = UsdGeom.Boundable(made[0]).GetExtentAttr().GetTimeSamples()
     else:
         points = (UsdGeom.PointBased(prim).GetPointsAttr() for prim in _hair_prims(source))
-        samples = [time for attribute in points for time in attribute.GetTimeSamples()]
+        samples = sorted({time for attribute in points for time in attribute.GetTimeSamples()})
+    if source.stage.GetPrimAtPath(HAIRS):  # one sample a frame
+        refuse_gaps(np.array(samples), source.path, "make the hairs again")
     return whole_frames(min(samples), max(samples), str(source.path)) if samples else np.empty(0)
 
 
