@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from commands import refused, run
+from ringlet.data.resampling import Resampling
 from ringlet.io import HairWriter, open_scene, problems, read_curves, read_space, write_cache, write_groom
 from usd_scenes import hairs_of, make_groom, write_head
 
@@ -97,18 +98,19 @@ def test_alembic_has_the_attributes_that_unreal_reads(hair, tmp_path):
 
 @pytest.mark.parametrize("suffix", [".hair", ".tfx", ".obj", ".usda", pytest.param(".abc", marks=needs_alembic)])
 def test_points_survive_every_format_in_every_unit_and_axis(hair, tmp_path, suffix):
-    path = tmp_path / f"a{suffix}"
-    done = convert(hair, path, unit=0.001, up="Z", only="hairs", bodies=False)
+    path, points = tmp_path / f"a{suffix}", 8 if suffix == ".tfx" else None
+    done = convert(hair, path, unit=0.001, up="Z", only="hairs", bodies=False, points=points)
     assert (done["unit"], done["up"], done["hairs"]) == (0.001, "Z", 10)
     space = None if suffix == ".usda" else StageSpace(0.001, "Z")
     back = read_curves(path, space=space or StageSpace())
     hairs = hairs_of(make_groom(tmp_path / "head.usdc"))
+    hairs = Resampling(hairs, points).curves(hairs) if points else hairs
     assert back.counts.tolist() == hairs.counts.tolist()
     np.testing.assert_allclose(back.points, hairs.points, atol=1e-6)
     if suffix in (".hair", ".usda", ".abc"):
         np.testing.assert_allclose(back.point["width"], hairs.point["width"], rtol=1e-5)
     if suffix == ".tfx":
-        np.testing.assert_allclose(back.curve["width"], hairs.point["width"].reshape(10, 7).max(axis=1), rtol=1e-5)
+        np.testing.assert_allclose(back.curve["width"], hairs.point["width"].reshape(10, 8).max(axis=1), rtol=1e-5)
 
 
 def test_what_a_format_cannot_hold_is_reported(hair, tmp_path):
@@ -116,15 +118,19 @@ def test_what_a_format_cannot_hold_is_reported(hair, tmp_path):
     for part in ("without 5 guides", "no surfaces", "no frame of 3 is chosen", "no widths", "st"):
         assert part in lost
     assert "one width for each curve" in " ".join(convert(hair, tmp_path / "a.tfx")["lost"])
-    assert convert(hair, tmp_path / "b.usdc")["lost"] == []
+    moves = "surfaces move from 1 to 4: only 1 to 3 are kept, in which the curves move"
+    assert convert(hair, tmp_path / "b.usdc")["lost"] == [moves]
+    assert convert(tmp_path / "b.usdc", tmp_path / "c.usdc")["lost"] == []
 
 
 @pytest.mark.parametrize("suffix", [".obj", ".hair", ".tfx"])
 def test_a_format_of_one_pose_holds_that_of_the_frame_that_is_chosen(hair, tmp_path, suffix):
     path = tmp_path / f"a{suffix}"
-    done = convert(hair, path, only="hairs", frames=(3, 3), unit=1.0)
+    points = 8 if suffix == ".tfx" else None
+    done = convert(hair, path, only="hairs", frames=(3, 3), unit=1.0, points=points)
     assert f"{suffix if suffix != '.obj' else 'OBJ'} holds one pose: that of frame 3" in done["lost"]
-    rest = hairs_of(make_groom(tmp_path / "head.usdc")).points
+    hairs = hairs_of(make_groom(tmp_path / "head.usdc"))
+    rest = (Resampling(hairs, points).curves(hairs) if points else hairs).points
     np.testing.assert_allclose(read_curves(path).points, rest + 2 * RISE, atol=1e-6)
 
 
@@ -157,9 +163,9 @@ def test_strands_and_points_are_subsampled_with_motion_and_widths(hair, tmp_path
 def test_curves_of_different_counts_are_resampled_for_tressfx(tmp_path):
     (tmp_path / "a.obj").write_text("v 0 0 0\nv 0 1 0\nv 0 3 0\nv 1 0 0\nv 1 2 0\nl 1 2 3\nl 4 5\n")
     done = convert(tmp_path / "a.obj", tmp_path / "a.tfx")
-    assert any("resampled to 3" in sentence for sentence in done["lost"])
+    assert any("resampled to 4" in sentence for sentence in done["lost"])
     back = read_curves(tmp_path / "a.tfx")
-    np.testing.assert_allclose(back.points[:, 1], [0, 1.5, 3, 0, 1, 2], atol=1e-6)
+    np.testing.assert_allclose(back.points[:, 1], [0, 1, 2, 3, 0, 2 / 3, 4 / 3, 2], atol=1e-6)
 
 
 def tfx(version=4.0, strands=1, points=2, values=b""):
@@ -221,3 +227,17 @@ def test_the_round_trip_table_is_what_is_measured():
     command = [sys.executable, root / "tools/proof/round_trip.py"]
     printed = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True).stdout
     assert printed.strip() in (root / "docs/convert.md").read_text()
+
+
+def test_strands_of_tressfx_have_a_number_of_points_that_it_takes(hair, tmp_path):
+    for points, count in ((None, 8), (16, 16), (20, 32), (300, 64)):
+        done = convert(hair, tmp_path / "a.tfx", points=points)
+        reported = any(f"all were resampled to {count}" in sentence for sentence in done["lost"])
+        assert set(read_curves(tmp_path / "a.tfx").counts) == {count} and reported == (points != 16)
+
+
+@needs_alembic
+def test_more_points_than_unreal_takes_are_reported(hair, tmp_path):
+    says = "Unreal takes at most 255 points of a curve, and there are 300: add --points"
+    assert says in convert(hair, tmp_path / "a.abc", points=300)["lost"]
+    assert "Unreal" not in str(convert(hair, tmp_path / "a.abc", points=255)["lost"])

@@ -79,9 +79,8 @@ def convert(
         if rod is not None:
             default = replace(default, meters_per_unit=1.0)
         space = StageSpace(unit or default.meters_per_unit, up or default.up_axis, scene.space.fps)
-        scene = replace(
-            scene, frames=frames_within(scene.frames, frames, source), bodies=scene.bodies if bodies else []
-        )
+        chosen = frames_within(scene.frames, frames, source)
+        scene = replace(scene, frames=chosen, bodies=scene.bodies if bodies else [])
         scene.sets = [_thinned(one, fraction, wider, points) for one in _chosen(scene, only, source)]
         has_unit = io.format_of(source).space is None
         remedy = "write the file again, in its unit" if has_unit else "give the unit of the file with --from-unit"

@@ -124,7 +124,7 @@ def write_sheet(
     look.refuse_all_but(SHEET_SETTINGS, "a sheet of small pictures")
     if not len(held := io.read_hair_frames(Path(stage))):
         raise UserError(f"{stage}: has no frames to draw a sheet of; give hairs made with --cache")
-    chosen = frames_within(held, frames, stage)
+    chosen = frames_within(held, frames, stage).tolist()
     spread = [chosen[i] for i in np.unique(np.linspace(0, len(chosen) - 1, count).round().astype(int))]
     picture.sheet(
         ((frame, *_posed(Path(stage), frame)) for frame in spread),

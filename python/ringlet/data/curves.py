@@ -12,6 +12,7 @@ from ringlet.data import limits
 from ringlet.data.attributes import check_attribute
 from ringlet.data.errors import UserError
 
+ID_HALVES = "id_high", "id_low"
 LEAST_EDGE = 1e-8  # [m] an edge that is shorter has no direction in single precision
 
 
@@ -207,6 +208,19 @@ class Curves:
                 "apart, or resample it"
             )
         return self
+
+
+def id_halves(ids: NDArray[np.int64]) -> dict[str, NDArray[np.int32]]:
+    """Ids as attributes of 32 bits, for programs and files without integers of 64."""
+    halves = zip(ID_HALVES, (ids >> 32, ids & 0xFFFFFFFF), strict=True)
+    return {name: half.astype(np.uint32).view(np.int32) for name, half in halves}
+
+
+def pop_id_halves(curve: dict[str, NDArray]) -> NDArray[np.int64] | None:
+    """Takes ids in halves out of the attributes of curves; None where there are none."""
+    halves = [curve.pop(name, None) for name in ID_HALVES]
+    found = [np.asarray(half, np.int64) for half in halves if half is not None and half.dtype == np.int32]
+    return (found[0] << 32) | (found[1] & 0xFFFFFFFF) if len(found) == len(ID_HALVES) else None
 
 
 def offsets_from_counts(counts: Sequence[int] | NDArray) -> NDArray[np.int32]:

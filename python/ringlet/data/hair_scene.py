@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet.data.curves import Curves
+from ringlet.data.groom import GROOM
 from ringlet.data.mesh import Clip, Mesh
 from ringlet.data.stage import StageSpace
 
@@ -21,12 +22,20 @@ class CurveSet:
     curves: in their rest pose [m]
     guide:  whether they are guides, which renderers do not show
     motion: positions at a frame [m], shape (points, 3); None for curves that stand still
+    material: path of the material that is bound to them; empty for none
     """
 
     name: str
     curves: Curves
     guide: bool = False
     motion: Callable[[float], NDArray[np.floating]] | None = None
+    material: str = ""
+
+    @property
+    def group_ids(self) -> NDArray[np.int32]:
+        """Unreal's ``groom_group_id``: as read, else the row of the groom of each curve; 0 for a single groom."""
+        curve = self.curves.curve
+        return curve.get("groom_group_id", curve.get(GROOM, np.zeros(len(self.curves)))).astype(np.int32)
 
     def points(self, frame: float | None) -> NDArray[np.floating]:
         """Positions at a frame [m], shape (points, 3); the rest pose for None."""
@@ -39,19 +48,32 @@ class HairScene:
 
     sets:   sets of curves, hairs before guides
     bodies: surfaces in their rest pose with their clips (None for one that stands still)
-    frames: whole frames at which something moves, shape (k,); empty where nothing does
+    frames: time codes of the samples of what moves, shape (k,); empty where nothing does
     space:  unit, up-axis and rate of the file
+    unread: a sentence for each thing in the file that is in none of these
     """
 
     sets: list[CurveSet]
     bodies: list[tuple[Mesh, Clip | None]] = field(default_factory=list)
     frames: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
     space: StageSpace = field(default_factory=StageSpace)
+    unread: list[str] = field(default_factory=list)
 
     def posed(self, frame: float | None) -> HairScene:
         """The scene as it stands at a frame, or at rest for None: its curves do not move."""
         sets = [replace(one, curves=one.curves.with_points(one.points(frame)), motion=None) for one in self.sets]
         return replace(self, sets=sets)
+
+    @property
+    def groom_ids(self) -> list[NDArray[np.int32]]:
+        """Unreal's ``groom_id`` of the curves of each set, which differ over the whole file.
+
+        They are the ids of the curves where these are different numbers of 31 bits, else counted from 0.
+        """
+        every = np.concatenate([np.empty(0, np.int64), *(one.curves.ids for one in self.sets)])
+        if len(np.unique(every)) < len(every) or np.abs(every).max(initial=0) >= 2**31:
+            every = np.arange(len(every))
+        return np.split(every.astype(np.int32), np.cumsum([len(one.curves) for one in self.sets])[:-1])
 
     @property
     def shown(self) -> list[CurveSet]:

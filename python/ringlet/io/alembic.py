@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet.data import limits
-from ringlet.data.curves import Curves
+from ringlet.data.curves import Curves, id_halves, pop_id_halves
 from ringlet.data.errors import UserError
 from ringlet.data.files import replacing
 from ringlet.data.hair_scene import CurveSet, HairScene
@@ -33,10 +33,13 @@ from ringlet.io.space import check_points, from_metres, to_metres
 
 VERSION_MAJOR, VERSION_MINOR = 1, 5  # of Unreal's groom attributes
 MAGIC = b"Ogawa", b"\x89HDF"
-# Attributes that have a property of their own in the schema of curves, or that only Ringlet knows.
-SCHEMA = {"width", "root_triangle", "root_barycentric", "lock", "guide_id", "rest"}
+# Attributes that have a property of their own in the schema of curves, or that the writer makes.
+SCHEMA = {"width", "rest"}
+FOREVER = 1e9  # seconds
+NEAR = 1e-3  # of a frame: a sample so near to one is at it
+COLORS = ("groom_color", "color", "displayColor")  # attributes that are groom_color: the first of them
 SHAPE = "Shape"  # ends the name of a shape, whose transform has the name itself
-UNREAL = ("groom_guide", "groom_group_id", "groom_id", "groom_root_uv")
+UNREAL = ("groom_guide", "groom_group_id", "groom_id", "groom_root_uv", "groom_color")
 
 
 def _library(path: Path) -> SimpleNamespace:
@@ -69,7 +72,8 @@ def open_alembic(path: Path, space: StageSpace) -> Iterator[HairScene]:
     try:
         archive = library.abc.IArchive(str(path))
         top = archive.getTop()
-        yield _Reader(library, path, space).scene(top)
+        rate = float(library.abc.GetArchiveInfo(archive).get("dccFPS") or 0.0)
+        yield _Reader(library, path, space, rate).scene(top)
     except RuntimeError as error:
         line = next(iter(str(error).splitlines()), "it is damaged")
         raise UserError(f"{path}: cannot be read as Alembic ({line[:120]}); export it again") from None
@@ -84,11 +88,17 @@ def _check_magic(path: Path) -> None:
 
 
 class _Reader:
-    def __init__(self, library: SimpleNamespace, path: Path, space: StageSpace) -> None:
+    """Reads the objects of an archive.
+
+    rate: frames per second that the archive names; 0 for none, so that they are those of the fastest samples
+    """
+
+    def __init__(self, library: SimpleNamespace, path: Path, space: StageSpace, rate: float) -> None:
         self.library, self.path, self.space = library, path, space
-        self.fps = space.fps
+        self.fps, self.rate = space.fps, rate if 1e-2 <= rate <= 1e5 else 0.0
         self.frames = set[float]()
         self.names = dict[int, str]()
+        self.unread = list[str]()
 
     def scene(self, top: Any) -> HairScene:
         """Everything below the top object."""
@@ -97,16 +107,18 @@ class _Reader:
         samplings = [schema.getTimeSampling() for schema, _ in found if self._moves(schema)]
         samplings += [xform.getTimeSampling() for _, above in found for xform in above if xform.getNumSamples() > 1]
         cycles = [sampling.getTimeSamplingType().getTimePerCycle() for sampling in samplings]
-        if cycles and 1e-5 < min(cycles) < 100.0:
+        if self.rate:
+            self.fps = self.rate
+        elif cycles and 1e-5 < min(cycles) < 100.0:
             self.fps = round(1.0 / min(cycles), 6)
         for schema, above in found:
             times = {
-                round(timed.getTimeSampling().getSampleTime(k) * self.fps, 3)
+                self._frame(timed.getTimeSampling().getSampleTime(k))
                 for timed in (schema, *above)
                 if self._moves(timed)
                 for k in range(timed.getNumSamples())
             }
-            self.frames |= {time for time in times if time == round(time)}
+            self.frames |= times
             if isinstance(schema, self.library.geom.ICurvesSchema):
                 sets += self._curve_sets(schema, above, bool(times))
             else:
@@ -116,7 +128,7 @@ class _Reader:
             raise UserError(f"{self.path}: has {len(frames)} frames; must be at most {limits.FRAMES:,}")
         bodies = [self._body(schema, above, frames) for schema, above in meshes if self._has_faces(schema)]
         space = StageSpace(self.space.meters_per_unit, self.space.up_axis, self.fps)
-        return HairScene(sorted(sets, key=lambda one: one.guide), bodies, frames, space)
+        return HairScene(sorted(sets, key=lambda one: one.guide), bodies, frames, space, self.unread)
 
     def _objects(self, parent: Any, above: list[Any]) -> Iterator[tuple[Any, list[Any]]]:
         """The schemas of curves and meshes below an object, each with those of the transforms above it."""
@@ -131,6 +143,8 @@ class _Reader:
                     own = child.getName() != parent.getName() + SHAPE
                     self.names[id(schema)] = child.getName() if own else parent.getName()
                     yield schema, path
+            if geom.INuPatch.matches(data) or geom.IPoints.matches(data):
+                self.unread.append(f"{child.getName()} is neither curves nor a mesh, and is not read")
             yield from self._objects(child, path)
 
     def _moves(self, timed: Any) -> bool:
@@ -146,27 +160,49 @@ class _Reader:
     def _where(self, schema: Any) -> str:
         return f"{self.path} {self.names[id(schema)]}"
 
-    def _at(self, frame: float | None) -> Any:
+    def _frame(self, seconds: float) -> float:
+        """The time code of a sample, which is a whole frame where it is within a thousandth of one."""
+        frame = seconds * self.fps
+        return float(round(frame)) if abs(frame - round(frame)) < NEAR else round(frame, 6)
+
+    def _first(self) -> Any:
+        """Selects the first sample; the library takes a whole number for seconds, too."""
+        return self.library.abc.ISampleSelector(-FOREVER)
+
+    def _between(self, timed: Any, frame: float | None, value: Callable[[Any], NDArray]) -> NDArray[np.float64]:
+        """A value at a frame, linear between its samples, held beyond the ends; the first sample for None."""
+        if frame is None or timed.getNumSamples() < 2:
+            return value(timed.getValue(self._first()))
+        sampling, count, seconds = timed.getTimeSampling(), timed.getNumSamples(), float(frame) / self.fps
+        rows = sampling.getFloorIndex(seconds, count), sampling.getCeilIndex(seconds, count)
+        times = [self._frame(sampling.getSampleTime(k)) for k in rows]
+        weight = 0.0 if times[1] <= times[0] else float(np.clip((frame - times[0]) / (times[1] - times[0]), 0.0, 1.0))
+        wanted = [(k, w) for k, w in zip(rows, (1.0 - weight, weight), strict=True) if w > 1e-6]
         selector = self.library.abc.ISampleSelector
-        return selector(0) if frame is None else selector(float(frame) / self.fps)
+        found = [w * value(timed.getValue(selector(sampling.getSampleTime(k)))) for k, w in wanted]
+        if any(one.shape != found[0].shape for one in found):
+            raise UserError(
+                f"{self.path}: the number of points changes at frame {frame:g}; export it with one topology"
+            )
+        return np.sum(found, axis=0)
 
     def _placed(self, schema: Any, above: list[Any], frame: float | None) -> NDArray[np.float64]:
         """Positions in world space [m], shape (n, 3)."""
-        points = np.array(schema.getValue(self._at(frame)).getPositions(), np.float64).reshape(-1, 3)
+        points = self._between(schema, frame, lambda at: np.array(at.getPositions(), np.float64).reshape(-1, 3))
         check_points(points, self._where(schema))
         return self._in_world(points, above, frame)
 
     def _in_world(self, points: NDArray[np.float64], above: list[Any], frame: float | None) -> NDArray[np.float64]:
         """Positions of a shape in world space [m], shape (n, 3)."""
         for xform in reversed(above):
-            matrix = np.array(xform.getValue(self._at(frame)).getMatrix(), np.float64).reshape(4, 4)
+            matrix = self._between(xform, frame, lambda at: np.array(at.getMatrix(), np.float64).reshape(4, 4))
             points = points @ matrix[:3, :3] + matrix[3, :3]
         return to_metres(points, self.space)
 
     def _curve_sets(self, schema: Any, above: list[Any], moves: bool) -> Iterator[CurveSet]:
         """The curves of a schema; its guides and its hairs apart, where it has both."""
         geom, where = self.library.geom, self._where(schema)
-        sample = schema.getValue(self._at(None))
+        sample = schema.getValue(self._first())
         counts = np.array(sample.getCurvesNumVertices(), np.int64)
         if len(counts) == 0:  # as valid as a mesh without faces
             return
@@ -193,17 +229,21 @@ class _Reader:
         curves = Curves(sampling.vertex(controls), sampling.offsets, ids)
         for name, values, scope in self._attributes(schema):
             self._add(curves, sampling, name, values, scope, where)
+        self._tell_unread(schema, sample, curves, moves)
         rest = curves.point.pop("rest", None)
         if rest is not None and rest.shape == curves.points.shape and np.isfinite(rest).all():
             curves.points = self._in_world(rest.astype(np.float64), above, None)
         guide = curves.curve.pop("groom_guide", np.zeros(len(ids)))
-        curves.curve.pop("groom_group_id", None)
+        if not curves.curve.get("groom_group_id", np.ones(1)).any():  # one group
+            del curves.curve["groom_group_id"]
         root_uv = curves.curve.pop("groom_root_uv", None)
         if root_uv is not None and root_uv.shape == (len(ids), 2):
             curves.curve["st"] = root_uv.astype(np.float32)
         named = curves.curve.pop("groom_id", ids)
         if named.dtype.kind in "iu" and len(np.unique(named)) == len(ids):
             curves.ids = named.astype(np.int64)
+        exact = pop_id_halves(curves.curve)
+        curves.ids = curves.ids if exact is None else exact
         curves.check(where)
         for wanted in (False, True):
             chosen = np.flatnonzero((guide > 0) == wanted)
@@ -211,11 +251,28 @@ class _Reader:
                 name = self.names[id(schema)] if len(chosen) == len(ids) else ("guides" if wanted else "hairs")
                 yield CurveSet(name, curves.take(chosen), wanted, _chosen(motion, curves, chosen) if moves else None)
 
+    def _tell_unread(self, schema: Any, sample: Any, curves: Curves, moves: bool) -> None:
+        """Notes what curves of the archive have and those that are read have not."""
+        name, parameters = self.names[id(schema)], schema.getArbGeomParams()
+        count = parameters.getNumProperties() if parameters.valid() else 0
+        headers = [parameters.getPropertyHeader(k) for k in range(count)]
+        unheld = {header.getName() for header in headers} - {*curves.curve, *curves.point}
+        lost = [f"{', '.join(sorted(unheld))} have no type or length of attributes of curves"] if unheld else []
+        if schema.getNormalsParam().valid():
+            lost.append("its normals are not used, since hairs are round")
+        if schema.getVelocitiesProperty().valid() and not moves:
+            lost.append("its velocities are not read; the motion is that of its points")
+        if sample.getType() == self.library.geom.CurveType.kVariableOrder:
+            lost.append("its curves are NURBS, read as lines through their control points")
+        self.unread += [f"{name}: {one}" for one in lost]
+
     def _attributes(self, schema: Any) -> Iterator[tuple[str, NDArray, str]]:
         """Names, values and scopes of widths and of arbitrary parameters, of types that attributes have."""
         geom = self.library.geom
         if (widths := schema.getWidthsParam()).valid():
             yield "width", self._values(widths) * np.float32(self.space.meters_per_unit), str(widths.getScope())
+        if (uvs := schema.getUVsParam()).valid():
+            yield "st", self._values(uvs), str(uvs.getScope())
         parameters = schema.getArbGeomParams()
         if not parameters.valid():
             return
@@ -235,7 +292,7 @@ class _Reader:
                     break
 
     def _values(self, parameter: Any) -> NDArray:
-        values = parameter.getExpandedValue(self._at(None)).getVals()
+        values = parameter.getExpandedValue(self._first()).getVals()
         try:
             return np.array(memoryview(values))
         except TypeError:
@@ -256,10 +313,10 @@ class _Reader:
             )
 
     def _has_faces(self, schema: Any) -> bool:
-        return len(schema.getValue(self._at(None)).getFaceCounts()) > 0
+        return len(schema.getValue(self._first()).getFaceCounts()) > 0
 
     def _body(self, schema: Any, above: list[Any], frames: NDArray) -> tuple[Mesh, Clip | None]:
-        where, sample = self._where(schema), schema.getValue(self._at(None))
+        where, sample = self._where(schema), schema.getValue(self._first())
         points = self._placed(schema, above, None)
         counts = np.array(sample.getFaceCounts(), np.int64)
         indices = np.array(sample.getFaceIndices(), np.int64)
@@ -322,20 +379,29 @@ def _write(library: SimpleNamespace, scene: HairScene, path: Path, space: StageS
     abc, geom, fps = library.abc, library.geom, scene.space.fps
     archive = abc.CreateArchiveWithInfo(str(path), fps, "Ringlet", "")
     top = archive.getTop()
-    first = float(scene.frames[0]) / fps if len(scene.frames) else 0.0
-    times = archive.addTimeSampling(library.core.TimeSampling(1.0 / fps, first))
+    times = archive.addTimeSampling(_sampling(library, scene.frames / fps, 1.0 / fps))
     properties = top.getProperties()
     for name, value in (("major", VERSION_MAJOR), ("minor", VERSION_MINOR)):
         abc.OInt16Property(properties, f"groom_version_{name}").setValue(value)
     abc.OStringProperty(properties, "groom_tool").setValue("Ringlet")
     root = geom.OXform(top, "groom")
     taken = list[str]()
-    for one in scene.sets:
+    for one, ids in zip(scene.sets, scene.groom_ids, strict=True):
         taken.append(unique(_last_word(one.name), taken))
-        _write_curves(library, root, taken[-1], one, scene.frames, times, space)
+        _write_curves(library, root, taken[-1], (one, ids), scene.frames, times, space)
     for mesh, clip in scene.bodies:
         taken.append(unique(_last_word(mesh.name), taken))
         _write_body(library, root, taken[-1], (mesh, clip), scene.frames, times, space)
+
+
+def _sampling(library: SimpleNamespace, seconds: NDArray[np.float64], cycle: float) -> Any:
+    """Times of samples: even ones by their distance, which is ``cycle`` for a single one, others one by one."""
+    core, steps = library.core, np.diff(seconds)
+    if len(steps) and not np.allclose(steps, steps[0], rtol=1e-6):
+        times = core.TimeVector()
+        times.extend(seconds.tolist())
+        return core.TimeSampling(core.TimeSamplingType(core.AcyclicFlag.kAcyclic), times)
+    return core.TimeSampling(*map(float, (steps.mean() if len(steps) else cycle, seconds[0] if len(seconds) else 0.0)))
 
 
 def _last_word(name: str) -> str:
@@ -349,9 +415,15 @@ def _place(library: SimpleNamespace, root: Any, name: str) -> tuple[Any, str]:
 
 
 def _write_curves(
-    library: SimpleNamespace, root: Any, name: str, one: CurveSet, frames: NDArray, times: int, space: StageSpace
+    library: SimpleNamespace,
+    root: Any,
+    name: str,
+    given: tuple[CurveSet, NDArray[np.int32]],
+    frames: NDArray,
+    times: int,
+    space: StageSpace,
 ) -> None:
-    geom, imath, curves = library.geom, library.imath, one.curves
+    geom, imath, (one, ids), curves = library.geom, library.imath, given, given[0].curves
     vertex, uniform = geom.GeometryScope.kVertexScope, geom.GeometryScope.kUniformScope
     moves = one.motion is not None and len(frames) > 0
     schema = geom.OCurves(*_place(library, root, name), *([times] if moves else [])).getSchema()
@@ -376,33 +448,42 @@ def _write_curves(
     parameters = schema.getArbGeomParams()
     if moves:
         _write_attribute(library, parameters, "rest", from_metres(curves.points, space), vertex)
-    for attribute, values, scope in unreal_attributes(one):
+    for attribute, values, scope in unreal_attributes(one, ids):
         _write_attribute(library, parameters, attribute, values, vertex if scope == "vertex" else uniform)
 
 
-def unreal_attributes(one: CurveSet) -> Iterator[tuple[str, NDArray, str]]:
-    """Unreal's groom attributes of curves, then those that these have themselves: name, values, scope."""
+def unreal_attributes(one: CurveSet, ids: NDArray[np.int32]) -> Iterator[tuple[str, NDArray, str]]:
+    """Unreal's groom attributes of curves, then those that these have themselves: name, values, scope.
+
+    ids: ``groom_id`` of the curves; where these are not their own, the own ones are written in halves
+    """
     curves, count = one.curves, len(one.curves)
-    fits = np.abs(curves.ids).max(initial=0) < 2**31
-    yield "groom_id", (curves.ids if fits else np.arange(count)).astype(np.int32), "uniform"
-    yield "groom_group_id", np.zeros(count, np.int32), "uniform"
+    yield "groom_id", ids, "uniform"
+    if (ids != curves.ids).any():
+        yield from ((name, half, "uniform") for name, half in id_halves(curves.ids).items())
+    yield "groom_group_id", one.group_ids, "uniform"
     yield "groom_guide", np.full(count, one.guide, np.int32), "uniform"
     if "st" in curves.curve:
         yield "groom_root_uv", curves.curve["st"].astype(np.float32), "uniform"
-    color = curves.point.get("color", curves.point.get("displayColor"))
-    if color is None and "displayColor" in curves.curve:
-        color = np.repeat(curves.curve["displayColor"], curves.counts, axis=0)
-    if color is not None:
-        yield "groom_color", color.astype(np.float32), "vertex"
-    for scope, attributes in (("uniform", curves.curve), ("vertex", curves.point)):
-        for name, values in attributes.items():
-            if name not in {*SCHEMA, *UNREAL, "st", "displayColor", "color"} and holds(values):
+    kinds = {"vertex": curves.point, "uniform": curves.curve}
+    colors = [(scope, name) for name in COLORS for scope, kind in kinds.items() if name in kind][:1]
+    for scope, name in colors:
+        values = kinds[scope][name]
+        values = values if scope == "vertex" else np.repeat(values, curves.counts, axis=0)
+        yield "groom_color", values.astype(np.float32), "vertex"
+    taken = {("uniform", "st"), *((scope, name) for scope, name in colors if scope == "vertex")}
+    for scope, kind in kinds.items():
+        for name, values in kind.items():
+            if name not in {*SCHEMA, *UNREAL} and (scope, name) not in taken and holds(values):
                 yield name, values, scope
 
 
 def holds(values: NDArray) -> bool:
-    """Whether an attribute can be written: numbers, alone or in rows of two or three."""
-    return values.dtype.kind in "bifu" and values.shape[1:] in ((), (2,), (3,))
+    """Whether an attribute can be written: numbers, alone or in rows of two or three, in 32 bits."""
+    if values.dtype.kind not in "bifu" or values.shape[1:] not in ((), (2,), (3,)):
+        return False
+    most = 2.0**31 if values.ndim == 1 else 2.0**24  # whole numbers in rows are written in single precision
+    return values.dtype.kind in "bf" or bool(np.abs(values.astype(np.float64)).max(initial=0.0) < most)
 
 
 def _write_attribute(library: SimpleNamespace, parent: Any, name: str, values: NDArray, scope: Any) -> None:

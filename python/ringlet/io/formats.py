@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,14 +12,17 @@ import numpy as np
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.hair_scene import CurveSet, HairScene
+from ringlet.data.mesh import Mesh
 from ringlet.data.resampling import Resampling
 from ringlet.data.stage import StageSpace
-from ringlet.io.alembic import SCHEMA, holds, open_alembic, write_alembic
+from ringlet.io.alembic import SCHEMA, UNREAL, holds, open_alembic, write_alembic
 from ringlet.io.hair import read_hair, write_hair
 from ringlet.io.obj import read_obj_curves, write_obj_curves
+from ringlet.io.tfx import SIZES as TFX_SIZES
 from ringlet.io.tfx import read_tfx, write_tfx
-from ringlet.io.usd.scene import open_usd_scene, write_usd_scene
+from ringlet.io.usd.scene import open_usd_scene, unwritten_in_usd, write_usd_scene
 
+UNREAL_POINTS = 255  # of a curve, which Unreal numbers by a byte
 METRES, CENTIMETRES = StageSpace(), StageSpace(0.01)
 
 
@@ -29,18 +32,18 @@ class Format:
 
     several: guides and hairs apart, surfaces and motion; the others hold one set of curves at rest
     widths:  ``point``, ``curve`` or ``none``
-    even:    whether all curves have the same number of points
+    sizes:   numbers of points of a curve, of which all curves have one; empty for any
     named:   further attributes, with names
-    kept:    attributes besides widths of a format without names
+    kept:    attributes besides widths of a format without names, and whether each is of a ``curve`` or a ``point``
     space:   unit and up-axis that a file is taken to have; None where the file says
     """
 
     name: str
     several: bool = False
     widths: str = "none"
-    even: bool = False
+    sizes: tuple[int, ...] = ()
     named: bool = False
-    kept: frozenset[str] = frozenset()
+    kept: dict[str, str] = field(default_factory=dict)
     space: StageSpace | None = METRES
     read: Callable[[Path, StageSpace], Curves] | None = None
     write: Callable[[Curves, Path, StageSpace], None] | None = None
@@ -52,8 +55,8 @@ FORMATS = {
     ".usda": USD,
     ".usdc": USD,
     ".abc": Format("Alembic", several=True, widths="point", named=True, space=CENTIMETRES),
-    ".hair": Format(".hair", widths="point", kept=frozenset({"color"}), read=read_hair, write=write_hair),
-    ".tfx": Format(".tfx", widths="curve", even=True, kept=frozenset({"st"}), read=read_tfx, write=write_tfx),
+    ".hair": Format(".hair", widths="point", kept={"color": "point"}, read=read_hair, write=write_hair),
+    ".tfx": Format(".tfx", widths="curve", sizes=TFX_SIZES, kept={"st": "curve"}, read=read_tfx, write=write_tfx),
     ".obj": Format("OBJ", read=read_obj_curves, write=write_obj_curves),
 }
 
@@ -100,36 +103,58 @@ def write_scene(scene: HairScene, path: Path | str, space: StageSpace) -> list[s
         raise UserError(f"{path}: packages are not written; name a .usdc, .usd or .usda file")
     if kind.write is None:
         (write_usd_scene if kind is USD else write_alembic)(scene, path, space)
-        return _unheld(scene, kind)
+        return [*scene.unread, *_unheld(scene, kind)]
     if not scene.sets:
         raise UserError(f"{path}: there are no curves to write, and {kind.name} holds nothing else")
     curves, lost = _one_set(scene, kind)
     kind.write(curves, path, space)
-    return lost
+    return [*scene.unread, *lost]
 
 
 def _unheld(scene: HairScene, kind: Format) -> list[str]:
-    """What Alembic does not hold: values that are no numbers, or in rows of another length."""
+    """What USD and Alembic do not hold."""
     if kind is USD:
-        return []
-    names = {n for one in scene.sets for n, v in (one.curves.curve | one.curves.point).items() if not holds(v)}
-    lost = sorted(names - SCHEMA)
-    return [f"{kind.name} holds no text and no long rows: without {', '.join(lost)}"] if lost else []
+        return list(unwritten_in_usd(scene))
+    lost = list[str]()
+    named = [pair for one in scene.sets for pair in (*one.curves.curve.items(), *one.curves.point.items())]
+    if names := sorted({name for name, values in named if not holds(values)} - SCHEMA):
+        lost.append(f"{kind.name} holds numbers of 32 bits in rows of up to three: without {', '.join(names)}")
+    if (most := max((int(one.curves.counts.max()) for one in scene.sets), default=0)) > UNREAL_POINTS:
+        lost.append(f"Unreal takes at most {UNREAL_POINTS} points of a curve, and there are {most}: add --points")
+    if names := sorted({name for one in scene.sets for name in one.curves.point} & {*UNREAL} - {"groom_color"}):
+        lost.append(f"{kind.name} holds Unreal's attributes for whole curves: without {', '.join(names)} of points")
+    lost += _materials(scene, kind)
+    meshes = [mesh for mesh, _ in scene.bodies]
+    if any(mesh.colors is not None or mesh.color != Mesh.color for mesh in meshes):
+        lost.append(f"{kind.name} is written without the colours of surfaces")
+    if regions := sorted({name for mesh in meshes for name in (*mesh.regions, *mesh.maps, *mesh.vectors)}):
+        lost.append(f"{kind.name} is written without regions and maps of surfaces: without {', '.join(regions)}")
+    return lost
+
+
+def _materials(scene: HairScene, kind: Format) -> list[str]:
+    held = any(one.material for one in scene.sets)
+    return [f"{kind.name} holds no materials: without that of hairs"] if held else []
 
 
 def _one_set(scene: HairScene, kind: Format) -> tuple[Curves, list[str]]:
     """The curves that a format of one set holds, and a sentence for each thing that it does not."""
     shown, lost = scene.shown, list[str]()
     curves = joined(shown)
+    every = {name for one in shown for name in (*one.curves.curve, *one.curves.point)}
+    if some := sorted(every - {*curves.curve, *curves.point}):
+        lost.append(f"only some curves have {', '.join(some)}: {kind.name} holds one set, without them")
     if left := [one for one in scene.sets if one not in shown]:
         lost.append(f"{kind.name} holds one set of curves: without {sum(len(one.curves) for one in left)} guides")
     if scene.bodies:
         lost.append(f"{kind.name} holds no surfaces: without {', '.join(mesh.name for mesh, _ in scene.bodies)}")
     if any(one.motion for one in shown):
         lost.append(f"{kind.name} holds one pose: the rest pose, as no frame of {len(scene.frames)} is chosen")
-    if kind.even and (curves.counts != curves.counts[0]).any():
-        count = int(curves.counts.max())
-        lost.append(f"{kind.name} holds curves of equal numbers of points: all were resampled to {count}")
+    most = int(curves.counts.max())
+    if kind.sizes and ((curves.counts != most).any() or most not in kind.sizes):
+        count = next((size for size in kind.sizes if size >= most), kind.sizes[-1])
+        sizes = ", ".join(map(str, kind.sizes))
+        lost.append(f"{kind.name} holds curves of {sizes} points, all of one number: all were resampled to {count}")
         curves = Resampling(curves, count).curves(curves)
     own = "width" in curves.point, "width" in curves.curve
     if any(own) and kind.widths == "none":
@@ -141,10 +166,14 @@ def _one_set(scene: HairScene, kind: Format) -> tuple[Curves, list[str]]:
     elif own[1] and kind.widths == "point":
         widths = np.repeat(curves.curve["width"], curves.counts)
         curves = replace(curves, point={**curves.point, "width": widths})
-    names = {*curves.curve, *curves.point} - {"width", *kind.kept}
+    for name in (name for name, scope in kind.kept.items() if scope == "point" and name in curves.curve):
+        curves = replace(curves, point={name: np.repeat(curves.curve[name], curves.counts, axis=0), **curves.point})
+    kept = {name for name, scope in kind.kept.items() if scope == "point" or name not in curves.point}
+    names = {*curves.curve, *curves.point} - {"width", *kept}
     if names:
         lost.append(f"{kind.name} holds no such attributes: without {', '.join(sorted(names))}")
-    if (curves.ids != np.arange(len(curves))).any():
+    lost += _materials(scene, kind)
+    if any((one.curves.ids != np.arange(len(one.curves))).any() for one in shown):
         lost.append(f"{kind.name} holds no ids: curves are numbered from 0")
     return curves, lost
 

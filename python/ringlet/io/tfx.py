@@ -22,6 +22,7 @@ from ringlet.io.space import check_points, from_metres, to_metres
 
 # Version, strands, points a strand, then the places of positions, root UVs, point UVs, thicknesses and colours.
 HEADER = struct.Struct("<f7I128s")
+SIZES = (4, 8, 16, 32, 64)  # points of a strand that TressFX takes
 FIXED = 2  # points of a strand at its root that do not move
 
 

@@ -150,7 +150,7 @@ class CacheFile:
                 found.append((points, mesh.triangles))
             return found
 
-    def within(self, frames: tuple[int, int] | None) -> NDArray[np.float64]:
+    def within(self, frames: tuple[float, float] | None) -> NDArray[np.float64]:
         """Frames in a closed range, all for None; raises UserError for a range with frames that are not there."""
         chosen = frames_within(self.frames, frames, self._source.path)
         refuse_gaps(chosen, self._source.path, "simulate again, or choose frames without it")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +11,7 @@ from pxr import Usd, UsdGeom
 
 from ringlet.data import limits
 from ringlet.data.errors import UserError
+from ringlet.data.frames import gaps
 from ringlet.data.mesh import Clip
 from ringlet.io.space import check_points
 from ringlet.io.usd.pose import motion_samples, posed_points, rest_time
@@ -49,8 +51,12 @@ def clip_at(
 
     Raises UserError for too much data, and for points or faces whose number or order changes.
     """
-    where, rate = source.where(prim), source.space.fps if fps is None else fps
-    times = _frames(source, prim, frames)
+    return clip_over(source, prim, _frames(source, prim, frames), source.space.fps if fps is None else fps)
+
+
+def clip_over(source: Source, prim: Usd.Prim, times: NDArray[np.float64], rate: float) -> Clip:
+    """Positions of a mesh prim at frames of ``rate`` a second; one sample for no frames. Errors as in ``clip_at``."""
+    where = source.where(prim)
     if len(times) == 0:
         points = posed_points(source, prim, Usd.TimeCode.EarliestTime(), where)  # one sample for all times
         return Clip(np.zeros(1), points[None], rate)
@@ -90,14 +96,28 @@ class _Faces:
                 )
 
 
+def sampled_frames(samples: Sequence[float], where: str) -> NDArray[np.float64]:
+    """Frames of samples, and the whole frames between those that are more than one apart, shape (k,).
+
+    Raises UserError for too many.
+    """
+    _check_span(min(samples), max(samples), where)
+    held = np.unique(samples)
+    return np.union1d(held, gaps(held))
+
+
 def whole_frames(first: float, last: float, where: str) -> NDArray[np.float64]:
     """Whole frames of a closed range, shape (k,); raises UserError for none or too many."""
-    if not abs(last - first) < limits.FRAMES:  # also true for NaN
-        raise UserError(f"{where}: moves from {first:g} to {last:g}; must be fewer than {limits.FRAMES:,} frames")
+    _check_span(first, last, where)
     frames = np.arange(math.ceil(first), math.floor(last) + 1, dtype=np.float64)
     if len(frames) == 0:
         raise UserError(f"{where}: there is no whole frame from {first:g} to {last:g}; give a longer range")
     return frames
+
+
+def _check_span(first: float, last: float, where: str) -> None:
+    if not abs(last - first) < limits.FRAMES:  # also true for NaN
+        raise UserError(f"{where}: moves from {first:g} to {last:g}; must be fewer than {limits.FRAMES:,} frames")
 
 
 def _frames(source: Source, prim: Usd.Prim, frames: tuple[float, float] | None) -> NDArray[np.float64]:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pxr import Sdf, Usd, UsdGeom, Vt
 
-from ringlet.data.curves import Curves, offsets_from_counts
+from ringlet.data.curves import ID_HALVES, Curves, id_halves, offsets_from_counts, pop_id_halves
 from ringlet.data.errors import UserError
 from ringlet.data.former_names import ATTRIBUTES
 from ringlet.data.groom import GROOM
@@ -40,7 +40,6 @@ from ringlet.io.usd.values import (
 
 OWN = "ringlet:"
 ID_NAMES = ("ringlet:id", "groom_id", "id", "hair_id", "hairid", "curve_id")
-ID_HALVES = ("id_high", "id_low")  # halves of 64-bit ids, for programs without such integers, such as Blender
 # Names with a meaning in the schema or in other programs; attributes of Ringlet with these names get a prefix.
 COMMON = {"rest", "skinprim", "skinprimuv", "st", "surface_uv_coordinate", "guide_curve_index", "clumpid", *ID_HALVES}
 COMMON |= {"groom_id", "groom_group_id", "groom_guide", "groom_root_uv", "groom_color"}
@@ -63,12 +62,15 @@ def read_usd_curves(path: Path | str, prim: str | None = None, notes: list[str] 
         found = filled(p for p in prims(root) if UsdGeom.BasisCurves(p))
         chosen = choose(source, found, "BasisCurves")
         if notes is not None:
-            notes += _unused(source, chosen)
+            notes += unused(source, chosen)
         return curves_at(source, chosen, rest_time(source, chosen))
 
 
-def curves_at(source: Source, prim: Usd.Prim, time: Usd.TimeCode) -> Curves:
-    """Polylines of a curves prim at a time [m], with its primvars as attributes."""
+def curves_at(source: Source, prim: Usd.Prim, time: Usd.TimeCode, unread: list[str] | None = None) -> Curves:
+    """Polylines of a curves prim at a time [m], with its primvars as attributes.
+
+    unread: receives the names of primvars of types and lengths that no attribute has
+    """
     where = source.where(prim)
     vertices, sampling = _sampled(source, prim, time)
     ids = np.arange(len(sampling.offsets) - 1, dtype=np.int64)
@@ -84,6 +86,10 @@ def curves_at(source: Source, prim: Usd.Prim, time: Usd.TimeCode) -> Curves:
         if primvar.GetTypeName().role == Sdf.ValueRoleNames.Point:
             values = to_metres(transformed(np.asarray(values, np.float64), prim, time), source.space)
         _add(curves, sampling, name, values, primvar.GetInterpolation(), f"{where}: {primvar.GetName()}")
+    if unread is not None:
+        api, held = UsdGeom.PrimvarsAPI(prim), {*curves.curve, *curves.point, *SCHEMA}
+        names = [primvar.GetPrimvarName().removeprefix(OWN) for primvar in api.GetPrimvarsWithAuthoredValues()]
+        unread += [name for name in names if name not in held]
     _add_widths(curves, sampling, source, prim, time)
     _assign_ids(curves)
     return curves.check(where)
@@ -177,8 +183,8 @@ def define_curves(
                 set_attribute(prim, name, interpolation, values)
     fits = np.abs(curves.ids).max(initial=0) < 2**31
     set_primvar(prim, "groom_id", "uniform", (curves.ids if fits else np.arange(len(curves))).astype(np.int32))
-    for name, half in zip(ID_HALVES, (curves.ids >> 32, curves.ids & 0xFFFFFFFF), strict=True):
-        set_primvar(prim, name, "uniform", half.astype(np.uint32).view(np.int32))
+    for name, half in id_halves(curves.ids).items():
+        set_primvar(prim, name, "uniform", half)
     set_primvar(prim, "groom_group_id", "uniform", curves.curve.get(GROOM, np.zeros(len(curves), np.int32)))
     set_primvar(prim, "groom_guide", "uniform", np.full(len(curves), guide, np.int32))
     return defined
@@ -285,7 +291,7 @@ def _add_widths(curves: Curves, sampling: Sampling, source: Source, prim: Usd.Pr
     _add(curves, sampling, "width", np.array(value, np.float64) * scale, interpolation, where)
 
 
-def _unused(source: Source, prim: Usd.Prim) -> list[str]:
+def unused(source: Source, prim: Usd.Prim) -> list[str]:
     """A sentence for each thing in a prim of curves that is not used."""
     where, schema, notes = source.where(prim), UsdGeom.BasisCurves(prim), list[str]()
     normals = schema.GetNormalsAttr(), UsdGeom.PrimvarsAPI(prim).GetPrimvar("normals")
@@ -340,10 +346,9 @@ def _add_own(curves: Curves, primvar: UsdGeom.Primvar, name: str, where: str) ->
 
 def _assign_ids(curves: Curves) -> None:
     """Sets the ids of curves from the first attribute of ``ID_NAMES`` with unique integers."""
-    halves = [curves.curve.pop(name, None) for name in ID_HALVES]
-    if "id" not in curves.curve and all(half is not None and half.dtype == np.int32 for half in halves):
-        high, low = (np.asarray(half, np.int64) for half in halves)
-        curves.curve["id"] = (high << 32) | (low & 0xFFFFFFFF)
+    ids = pop_id_halves(curves.curve)
+    if "id" not in curves.curve and ids is not None:
+        curves.curve["id"] = ids
     for name in (full_name.removeprefix(OWN) for full_name in ID_NAMES):
         ids = curves.curve.get(name)
         if ids is not None and ids.dtype.kind in "iu" and ids.ndim == 1 and len(np.unique(ids)) == len(ids):

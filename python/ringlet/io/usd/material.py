@@ -27,6 +27,7 @@ from ringlet.data.pigment import (
 from ringlet.io.usd.values import Types
 
 SCOPE = "materials"
+HAIR_BSDF, OWN_MATERIAL = "ND_chiang_hair_bsdf", "the hair material"  # its shader; its name in a scene
 IOR = 1.55
 CONTEXT = "mtlx"  # render context of MaterialX
 
@@ -70,7 +71,7 @@ def _hair(material: UsdShade.Material, values: Curves) -> UsdShade.Output:
     bsdf = _shader(
         material,
         "bsdf",
-        "ND_chiang_hair_bsdf",
+        HAIR_BSDF,
         {
             "ior": IOR,
             "cuticle_angle": 0.5 + of_fiber(values, TILT) / 180.0,  # 0 to 1 is -90° to 90°
