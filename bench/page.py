@@ -218,8 +218,7 @@ def drag(review: Review, steps: int) -> dict[str, dict[str, float]]:
 
 def processor_ms(server: Server) -> float:
     """Processor time of a server so far, from /proc [ms]."""
-    assert server.process
-    user, system = Path(f"/proc/{server.process.pid}/stat").read_text().rsplit(")", 1)[1].split()[11:13]
+    user, system = Path(f"/proc/{server.pid}/stat").read_text().rsplit(")", 1)[1].split()[11:13]
     return 1e3 * (int(user) + int(system)) / os.sysconf("SC_CLK_TCK")
 
 

@@ -3,8 +3,8 @@
 set -u
 cd "$(dirname "$0")/.."
 bin=.venv/bin
-log=$(mktemp)
-trap 'rm -f "$log"' EXIT
+log=$(mktemp) slow=$(mktemp)
+trap 'rm -f "$log" "$slow"' EXIT
 failed=()
 
 step() { # name, command …
@@ -17,6 +17,7 @@ step() { # name, command …
         sed 's/^/        /' "$log"
         failed+=("$name")
     fi
+    grep -E '^[0-9.]+s (call|setup|teardown) ' "$log" >>"$slow"
 }
 
 cpp_tests() {
@@ -27,16 +28,16 @@ cpp_tests() {
 # Two tests at a time, each on one thread: threads that wait for one another would take the processors from the other test.
 pytests() { OMP_NUM_THREADS=1 $bin/python -m pytest -n 2 --durations 8 "$@"; }
 
-# The review page in headless Chromium; where there is none these are skipped, and say so.
-browser_tests() { OMP_NUM_THREADS=1 $bin/python -m pytest -rs tests/browser; }
-
 step "C++ tests" cpp_tests
 step "Python tests" pytests tests/python
 step "physics tests" pytests tests/physics
-step "browser tests" browser_tests
+step "browser tests" pytests -rs tests/browser # in headless Chromium; where there is none they are skipped, and say so
 step "known answers (ringlet validate)" $bin/ringlet validate
 step "lints" tools/lint.sh
 step "documents" tools/docs.sh
+
+printf '\nThe slowest tests:\n'
+sort -rn "$slow" | head -n 8
 
 if ((${#failed[@]})); then
     printf '\nRinglet: %d of 7 steps failed: %s\n' ${#failed[@]} "$(IFS=,; echo "${failed[*]}")"

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from review import CHROMIUM, FLAGS, PATIENCE, Review, Server
+from review import CHROMIUM, FLAGS, PATIENCE, SKETCH, Review, Server
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "python"))
 from small_example import write_example
@@ -69,12 +69,13 @@ def serve(folder: Path) -> Iterator[Callable[[str], Server]]:
 def opened(browser: Any, serve: Callable[[str], Server]) -> Iterator[Callable[..., Review]]:
     contexts: list[Any] = []
 
-    def open_page(server: Server | str = "small.recipe.toml", **more: Any) -> Review:
+    def open_page(server: Server | str = "small.recipe.toml", *, pixels: float | None = SKETCH, **more: Any) -> Review:
+        """A page in a context of its own; see ``Review`` for the pixels of its picture."""
         address = (serve(server) if isinstance(server, str) else server).address
         options = {"viewport": {"width": 1000, "height": 640}, "color_scheme": "dark", **more}
         contexts.append(browser.new_context(**options))
         contexts[-1].set_default_timeout(1000 * PATIENCE)
-        return Review(contexts[-1].new_page(), address)
+        return Review(contexts[-1].new_page(), address, pixels=pixels)
 
     yield open_page
     for context in contexts:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import base64
 import io
+import json
 import os
 import shutil
-import socket
+import signal
 import subprocess
 import sys
-import time
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +25,7 @@ FLAGS = [
     "--use-angle=swiftshader",
     "--enable-unsafe-swiftshader",
     "--ignore-gpu-blocklist",
+    "--disable-gpu-compositing",  # panels are drawn without it in a third of the time
     "--disable-quic",
     "--no-first-run",
     "--disable-background-networking",
@@ -33,92 +35,110 @@ FLAGS = [
 PATIENCE = 90.0  # [s] for slow software rendering
 
 
+@cache
+def zygote() -> subprocess.Popen[str]:
+    """The process from which servers are forked; it ends with this one."""
+    alone = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive"}
+    program, pipe = [sys.executable, Path(__file__).with_name("zygote.py")], subprocess.PIPE
+    return subprocess.Popen(program, env={**os.environ, **alone}, stdin=pipe, stdout=pipe, text=True, bufsize=1)
+
+
+def ask_zygote(**question: Any) -> dict[str, Any]:
+    process = zygote()
+    assert process.stdin and process.stdout
+    process.stdin.write(json.dumps(question) + "\n")
+    line = process.stdout.readline()
+    assert line, f"the process of the servers has ended: {process.poll()}"
+    return json.loads(line)
+
+
 class Server:
-    """``ringlet view`` in its own process."""
+    """``ringlet view`` in a process of its own, at the same address whenever it is started again."""
 
     def __init__(self, file: Path) -> None:
-        with socket.socket() as free:
-            free.bind(("127.0.0.1", 0))
-            self.port = free.getsockname()[1]
         self.file = file
-        self.process: subprocess.Popen[bytes] | None = None
+        self.port = self.pid = 0
 
     @property
     def address(self) -> str:
         return f"http://127.0.0.1:{self.port}/"
 
     def start(self) -> None:
-        program = "from ringlet.cli import main; main()"
-        arguments = ["view", str(self.file), "--port", str(self.port), "--no-browser"]
-        environment = {**os.environ, "OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive"}
-        self.process = subprocess.Popen(
-            [sys.executable, "-c", program, *arguments], env=environment, stdout=subprocess.DEVNULL
-        )
-        deadline = time.monotonic() + PATIENCE
-        while time.monotonic() < deadline:
-            try:
-                socket.create_connection(("127.0.0.1", self.port), 1.0).close()
-                return
-            except OSError:
-                time.sleep(0.1)
-        raise AssertionError("the server did not start")
+        answer = ask_zygote(view=str(self.file), port=self.port)
+        assert "pid" in answer, answer
+        self.pid, self.port = answer["pid"], answer["port"]
+
+    def pause(self) -> None:
+        """Lets it receive no more messages."""
+        os.kill(self.pid, signal.SIGSTOP)
 
     def kill(self) -> None:
-        if self.process:
-            self.process.kill()
-            self.process.wait()
+        if self.pid:
+            ask_zygote(kill=self.pid)
+        self.pid = 0
+
+
+SKETCH = 0.2  # pixels of a picture that nobody looks at, over those of the page
+
+# Each picture is drawn once and in one go; one that nobody looks at has no light in its hair.
+ONCE = """({ lit }) => {
+    const { pace, hair } = ringlet.viewer;
+    pace.needed = () => 1;
+    pace.slice = () => ({ drawing: Infinity, computing: Infinity });
+    if (!lit) for (const one of Object.values(hair)) one.light = function* () {};
+}"""
 
 
 class Review:
-    """An open page of the review."""
+    """An open page of the review.
 
-    def __init__(self, page: Any, address: str) -> None:
+    pixels: of its picture over those of the page, which is then drawn with the least work; None: as users see it
+    """
+
+    def __init__(self, page: Any, address: str, *, pixels: float | None = None) -> None:
         self.page = page
         self.errors: list[str] = []
         page.on("pageerror", lambda error: self.errors.append(str(error)))
         page.on(
             "console", lambda message: self.errors.append(message.text) if "shader" in message.text.lower() else None
         )
+        if pixels is not None:
+            page.add_init_script(f"Object.defineProperty(window, 'devicePixelRatio', {{ get: () => {pixels} }})")
         page.goto(address)
-        self.until("window.ringlet?.viewer.hair.a.table && ringlet.model.settled")
-        self.laid_out()
+        self.until("window.ringlet")
+        if pixels is not None:
+            page.evaluate(ONCE, {"lit": pixels > SKETCH})
+        self.until("ringlet.viewer.hair.a.table && ringlet.settled")
 
     def get(self, expression: str) -> Any:
         return self.page.evaluate(f"() => {expression}")
 
     def until(self, expression: str, patience: float = PATIENCE) -> None:
-        """Waits until an expression holds on the page."""
-        deadline = time.monotonic() + patience
-        while time.monotonic() < deadline:
-            if self.get(f"Boolean({expression})"):
-                return
-            time.sleep(0.05)
-        raise AssertionError(f"timeout: {expression}; {self.errors}")
+        """Waits until an expression holds on the page, which looks at it again and again."""
+        held = self.page.evaluate(
+            f"""async (patience) => {{
+                const end = performance.now() + patience, later = (next) => setTimeout(next, 16);
+                while (!({expression}) && performance.now() < end) await new Promise(later);
+                return Boolean({expression});
+            }}""",
+            1000 * patience,
+        )
+        assert held, f"timeout: {expression}; {self.errors}"
 
     def text(self, file: str = "recipe") -> str:
         return self.get(f"ringlet.model.documents.{file}.text")
 
     def answered(self) -> None:
-        """Waits until the server has processed all messages so far, by an exchange of the edit lock."""
-        self.get("(window.role = ringlet.model.role, ringlet.model.say({ kind: 'lead' }))")
-        self.until("ringlet.model.role !== role")
+        """Waits until the server has answered all messages so far."""
+        self.until("ringlet.model.link.answered")
 
     def settled(self) -> None:
-        """Waits until all requests are built and drawn."""
-        before = self.get("ringlet.viewer.pictures")
-        self.until("ringlet.model.settled")
-        self.get("ringlet.viewer.invalidate()")
-        self.until(f"ringlet.viewer.pictures > {before}")
+        """Waits until all that was asked for is built, laid out and drawn."""
+        self.until("ringlet.settled")
 
     def laid_out(self) -> None:
-        """Waits until panels have their sizes, which the picture is composed for: the same in two frames in a row.
-
-        The browser reports a new size of a panel in the frame after the change.
-        """
-        self.page.evaluate(
-            "async () => { for (let now = '', before; now !== before; ) { before = now; "
-            "await new Promise(requestAnimationFrame); now = JSON.stringify(ringlet.viewer.clear); } }"
-        )
+        """Waits until panels and picture have their sizes."""
+        self.until("ringlet.laidOut")
 
     def picture(self) -> np.ndarray:
         """Pixels of the canvas, shape (height, width, 3)."""
@@ -127,14 +147,22 @@ class Review:
 
     def clear_picture(self) -> np.ndarray:
         """Pixels of what panels leave clear, which the picture is composed for, shape (height, width, 3)."""
-        picture, clear = self.picture(), self.get("ringlet.viewer.clear")
-        return picture[clear["y"] :, clear["x"] :][: clear["height"], : clear["width"]]
+        picture = self.picture()
+        ratio, clear = picture.shape[1] / self.get("ringlet.viewer.size.width"), self.get("ringlet.viewer.clear")
+        left, top, width, height = (int(ratio * clear[side]) for side in ("x", "y", "width", "height"))
+        return picture[top : top + height, left : left + width]
 
     @staticmethod
     def picture_of(page: Any, viewer: str) -> np.ndarray:
-        """Pixels of the canvas of a viewer, shape (height, width, 3)."""
+        """Pixels of the canvas of a viewer with all its drawings, shape (height, width, 3)."""
         data = page.evaluate(
-            f"() => {{ {viewer}.drawNow(); return {viewer}.renderer.domElement.toDataURL('image/png') }}"
+            f"""() => {{
+                const {{ pace }} = {viewer}, {{ needed }} = pace;
+                delete pace.needed;
+                {viewer}.drawNow();
+                if (needed !== pace.needed) pace.needed = needed;
+                return {viewer}.renderer.domElement.toDataURL('image/png');
+            }}"""
         )
         return np.asarray(Image.open(io.BytesIO(base64.b64decode(data.split(",")[1]))).convert("RGB"), np.float64)
 

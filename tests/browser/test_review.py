@@ -79,7 +79,7 @@ def test_gpu_hairs_of_several_grooms_equal_those_of_the_core(opened: Any, folder
 
 def test_the_list_above_the_stages_chooses_the_groom_that_is_changed(opened: Any, folder: Path):
     (folder / "several.recipe.toml").write_text(SEVERAL)
-    review: Review = opened("several.recipe.toml")
+    review: Review = opened("several.recipe.toml", pixels=0.5)
     before = review.picture()
     review.page.get_by_label("Groom", exact=True).select_option("brows")
     review.until("ringlet.model.documents.recipe.groom === 'brows'")
@@ -93,7 +93,7 @@ def test_the_list_above_the_stages_chooses_the_groom_that_is_changed(opened: Any
 
 
 def test_a_slider_changes_picture_and_recipe_and_undo_reverts_both(opened: Any):
-    review: Review = opened()
+    review: Review = opened(pixels=0.5)
     before, text = review.picture(), review.text()
     review.drag(review.slider("curl.width"), 0.35, 0.6, 0.9)
     review.until("ringlet.model.documents.recipe.dirty")
@@ -223,7 +223,7 @@ def test_guides_are_sculpted_with_a_brush(opened: Any):
 
 
 def test_the_plane_of_symmetry_is_seen_while_a_brush_works_on_both_sides(opened: Any):
-    review: Review = opened(viewport={"width": 800, "height": 500})
+    review: Review = opened(viewport={"width": 800, "height": 500}, pixels=1)
     review.page.get_by_role("button", name="Sculpt guides").click()
     review.until("ringlet.viewer.guides.shown")
     both = review.page.get_by_role("switch", name="both sides")
@@ -285,7 +285,7 @@ def test_a_value_of_several_locks_is_set_and_reverted_in_one_step(opened: Any):
 def test_regions_and_overlays_are_chosen_from_lists(opened: Any, folder: Path):
     recipe = folder / "small.recipe.toml"
     recipe.write_text(recipe.read_text() + '[[pin]]\nlength = "2 cm"\n[[shape]]\nop = "scraggle"\n')
-    review: Review = opened()
+    review: Review = opened(pixels=0.5)
     review.choose("shape/0")
     review.show_all_settings()
     review.unfold("shape.0.mask")
@@ -303,7 +303,7 @@ def test_regions_and_overlays_are_chosen_from_lists(opened: Any, folder: Path):
 
 
 def test_two_looks_are_shown_side_by_side(opened: Any):
-    review: Review = opened()
+    review: Review = opened(pixels=1)
     other = review.page.get_by_label("Compare with another look")
     other.select_option("now")
     review.until("ringlet.viewer.compared && ringlet.viewer.hair.b.table")
@@ -328,7 +328,7 @@ def test_two_looks_are_shown_side_by_side(opened: Any):
 
 
 def test_colour_is_edited_and_shown(opened: Any):
-    review: Review = opened()
+    review: Review = opened(pixels=0.5)
     before = review.picture()
     review.choose("color")
     review.drag(review.slider("color.melanin"), 0.9, 0.4, 0.02)

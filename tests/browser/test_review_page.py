@@ -27,6 +27,20 @@ def test_an_idle_page_draws_nothing(opened: Any):
     assert review.get("ringlet.viewer.pictures") == before
 
 
+def test_the_page_says_when_it_has_settled(opened: Any):
+    review: Review = opened()
+    assert review.get("ringlet.settled")
+    change = "ringlet.model.say({ kind: 'set', changes: [[['curl', 'width'], 2]], gesture: 1 })"
+    assert not review.get(f"({change}, ringlet.settled)")
+    review.settled()
+    assert review.get("ringlet.model.said('recipe', ['curl', 'width'])") == 2
+    assert not review.get("(ringlet.viewer.move(), ringlet.settled)")
+    review.settled()
+    assert not review.get("(document.querySelector('.settings').style.width = '200px', ringlet.laidOut)")
+    review.laid_out()
+    assert not review.errors
+
+
 REACH = (Path(__file__).parent / "reach.js").read_text()
 
 
@@ -59,7 +73,7 @@ def test_the_page_loads_no_external_resource(opened: Any):
 
 
 def test_pictures_and_movies_are_saved(opened: Any):
-    review: Review = opened()
+    review: Review = opened(pixels=None)
     for size, clear in (("", False), ("2048 × 2048", True)):
         review.page.get_by_role("button", name="Save picture").click()
         review.page.get_by_label("Size in pixels").select_option(size)
@@ -77,7 +91,8 @@ def test_pictures_and_movies_are_saved(opened: Any):
     began = time.monotonic()
     for turn in (0.3, 0.6):
         review.get(f"(ringlet.viewer.orbit({turn}, 0), ringlet.viewer.move())")
-        review.page.wait_for_timeout(700)
+        review.until("ringlet.viewer.current")
+    review.until("document.querySelector('.recorded').textContent !== '0:00'")
     minutes, seconds = review.page.get_by_label("Recorded time").inner_text().split(":")
     assert 0 < 60 * int(minutes) + int(seconds) <= time.monotonic() - began + 1
     with review.page.expect_download() as movie:

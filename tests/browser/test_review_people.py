@@ -54,7 +54,7 @@ def test_a_follower_sees_what_the_leader_sees_until_it_looks_elsewhere(pair: tup
     one.until("ringlet.model.role.people.some((person) => !person.follows)")
     one.choose("guides")
     one.page.keyboard.press("ArrowLeft")
-    two.page.wait_for_timeout(300)
+    two.until("ringlet.model.followed.place[0] == 'guides'")
     assert two.get("ringlet.model.chosen.place[0]") == "curl"
     two.page.keyboard.press("g")
     two.until("ringlet.model.chosen.place[0] == 'guides'")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import signal
 from typing import Any
 
 from review import Review, different
@@ -11,7 +10,7 @@ from review import Review, different
 def test_one_page_edits_and_the_other_follows(opened: Any, serve: Any):
     server = serve("small.recipe.toml")
     one: Review = opened(server)
-    two: Review = opened(server)
+    two: Review = opened(server, pixels=0.5)
     assert one.get("ringlet.model.role.leads") and not two.get("ringlet.model.role.leads")
     before = two.picture()
     one.drag(one.slider("curl.width"), 0.35, 0.9)
@@ -69,7 +68,7 @@ def test_unanswered_messages_are_resent_after_a_restart(opened: Any, serve: Any)
         field.fill(value)
         field.press("Enter")
 
-    server.process.send_signal(signal.SIGSTOP)  # the server receives no more messages
+    server.pause()  # the server receives no more messages
     fill("curl.width", "1.75")
     server.kill()
     review.until("document.documentElement.dataset.link == 'lost'")
@@ -84,7 +83,7 @@ def test_unanswered_messages_are_resent_after_a_restart(opened: Any, serve: Any)
 def test_a_page_that_is_loaded_again_says_what_was_not_answered(opened: Any, serve: Any):
     server = serve("small.recipe.toml")
     review: Review = opened(server)
-    server.process.send_signal(signal.SIGSTOP)
+    server.pause()
     field = review.page.locator('[data-setting="curl.width"] > .field-head input.number')
     field.fill("1.75")
     field.press("Enter")

@@ -38,7 +38,7 @@ def look_of(review: Review, *order: str) -> np.ndarray:
 
 
 def test_a_snapshot_is_taken_compared_loaded_noted_and_deleted(opened: Any, folder: Path):
-    review: Review = opened(viewport={"width": 1280, "height": 800})
+    review: Review = opened(viewport={"width": 1280, "height": 800}, pixels=0.5)
     page = review.page
     first = review.picture()
     page.keyboard.press("t")
@@ -113,7 +113,7 @@ def test_four_looks_have_one_camera_and_their_labels(opened: Any):
 
 
 def test_the_difference_of_two_looks_is_where_they_differ(opened: Any):
-    review: Review = opened(viewport={"width": 1000, "height": 640})
+    review: Review = opened(viewport={"width": 1000, "height": 640}, pixels=0.5)
     page = review.page
     page.get_by_label("Compare with another look").select_option("now")
     review.until("ringlet.viewer.compared && ringlet.viewer.hair.b.table")

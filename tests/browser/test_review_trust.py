@@ -304,7 +304,7 @@ def test_light_camera_and_bookmarks_are_remembered(opened: Any):
     page.keyboard.press("ArrowLeft")
     page.keyboard.press("1")
     assert review.get("ringlet.viewer.camera.position.toArray()") == pytest.approx(eye)
-    page.wait_for_timeout(300)
+    review.settled()  # the look is remembered
     page.reload()
     review.until("window.ringlet?.viewer.hair.a.table && ringlet.model.settled")
     assert review.get("ringlet.viewer.camera.position.toArray()") == pytest.approx(eye)
@@ -333,7 +333,7 @@ def test_locks_are_chosen_by_a_lasso_and_by_keys_and_the_edited_ones_are_listed(
 
 
 def test_two_looks_are_labelled_wiped_swapped_and_flipped(opened: Any):
-    review: Review = opened()
+    review: Review = opened(pixels=1)
     page = review.page
     number(review, "curl.width").fill("2")
     number(review, "curl.width").press("Enter")

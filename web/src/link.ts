@@ -60,6 +60,11 @@ export class Link {
     return this.owed.some(({ kind }) => CHANGES.includes(kind)) || this.again.length > 0;
   }
 
+  /** Whether all that was said has been heard by the server that is there. */
+  get answered(): boolean {
+    return this.socket?.readyState === WebSocket.OPEN && !this.owed.length && !this.again.length;
+  }
+
   /** Connects, and keeps at it. */
   start(): void {
     const token = tokenOf(location.hash);

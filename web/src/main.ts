@@ -51,6 +51,7 @@ class App {
   private readonly notices = new Notices();
   private readonly problems: ProblemBar;
   private readonly status = new Status(this.model);
+  private readonly clearArea: ClearArea;
   private session = "";
   /** What the page had when the connection was lost, to be given back to a server that was started anew. */
   private kept: Partial<Record<"recipe" | "shot", Unsaved>> = {};
@@ -129,7 +130,7 @@ class App {
     );
     const below = [viewbar.element, this.timeline.element, this.status.element, sheets.element];
     const panels = [...left.children, settings] as HTMLElement[];
-    new ClearArea([bar, this.problems.element], [compare.bar], panels, below, this.tray.element, (clear) => {
+    this.clearArea = new ClearArea([bar, this.problems.element], [compare.bar], panels, below, this.tray.element, (clear) => {
       this.viewer.setClear(clear);
       this.model.tell("clear");
     });
@@ -146,6 +147,20 @@ class App {
       if (document.documentElement.dataset["link"] !== "open" && this.model.link?.unanswered) event.preventDefault();
     });
     this.model.link.start();
+  }
+
+  /** Whether panels and picture have their sizes. */
+  get laidOut(): boolean {
+    return this.clearArea.settled && this.viewer.fitted;
+  }
+
+  /**
+   * Whether nothing is to come until someone does something: all that was said is answered, the groom is what the recipe
+   * says, panels have their places, and the picture shows all that. Finer drawings of the same may still come.
+   */
+  get settled(): boolean {
+    const { model, viewer, look } = this;
+    return Boolean(model.link?.answered) && model.settled && look.settled && this.laidOut && viewer.current;
   }
 
   private setTheme(theme?: "dark" | "light"): void {

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-import matplotlib
 import numpy as np
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from ringlet.data.files import replacing
@@ -24,6 +22,9 @@ def write_places(
     body, locks: positions [m], shape (n, 3)
     places:      positions of marks by name [m], shape (n, 3) each
     """
+    import matplotlib  # takes half a second, and few need it
+    from matplotlib.figure import Figure
+
     matplotlib.rcParams["svg.hashsalt"] = "ringlet"
     figure = Figure(figsize=(13, 5), layout="constrained")
     figure.suptitle(title)

@@ -60,7 +60,7 @@ def view(
     )
     told(f"ringlet view: {file.name} at {address}  (Ctrl-C ends it)")
     if browser:
-        threading.Timer(0.5, webbrowser.open, [address]).start()
+        threading.Thread(target=webbrowser.open, args=[address], daemon=True).start()
     logging.getLogger("asyncio").setLevel(logging.ERROR)  # that a page left is no warning
     server = uvicorn.Server(config)
     if until is not None:
@@ -83,6 +83,7 @@ def _listen(host: str, port: int | None) -> socket.socket:
         listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             listening.bind((host, candidate))
+            listening.listen()  # what connects from now on waits until the server runs
         except OSError as error:
             listening.close()
             if port is not None:

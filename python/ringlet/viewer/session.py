@@ -44,7 +44,7 @@ PATIENCE = 1.0  # that the end of the server waits for work in progress [s]
 
 
 @cache
-def _schemas() -> dict[str, Any]:
+def schemas() -> dict[str, Any]:
     """JSON schemas of recipes and shots, made once: it takes half a second."""
     return api.schema()
 
@@ -191,7 +191,6 @@ class Session:
 
     def _welcome(self, name: str) -> bytes:
         """First message to the page of a name."""
-        schemas = _schemas()
         lights, wrong = live_rigs_of(self.project)
         if wrong:
             self.problems.show(LIGHT, "; ".join(wrong), [dismiss(LIGHT)])
@@ -205,8 +204,8 @@ class Session:
                     "heard": self._heard[name],
                     "name": str(self.files.file.relative_to(self.project.folder)),
                     "mode": self.files.mode,
-                    "schemas": schemas,
-                    "operators": operator_names(schemas["recipe"]),
+                    "schemas": schemas(),
+                    "operators": operator_names(schemas()["recipe"]),
                     "recovered": self.recovered,
                     "colors": display_colors.named(),
                     "rigs": lights,

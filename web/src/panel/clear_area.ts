@@ -26,32 +26,50 @@ export class ClearArea {
     for (const element of [document.documentElement, ...above, ...over, ...sides, ...below, tray]) observer.observe(element);
   }
 
+  /** Whether panels are where they were measured last. */
+  get settled(): boolean {
+    return JSON.stringify(this.clear()) === this.box;
+  }
+
   private measure(): void {
     const { innerWidth, innerHeight } = window;
     const { style } = document.documentElement;
-    const bottom = Math.min(innerHeight, ...this.below.flatMap(seen).map(({ top }) => top - GAP / 2));
+    const { bottom } = this;
     const under = this.largest(bottom);
     style.setProperty("--below", `${innerHeight - bottom + GAP / 2}px`);
     style.setProperty("--tray-left", `${under.x}px`);
     style.setProperty("--tray-right", `${innerWidth - under.x - under.width}px`);
     style.setProperty("--tray-bottom", `${innerHeight - under.y - under.height}px`);
-    const [tray] = seen(this.tray);
-    const clear = tray ? this.largest(Math.min(bottom, tray.top - GAP / 2)) : under;
-    const begin = clear.y;
-    if (innerWidth <= SMALL)
-      for (const { height } of this.over.flatMap(seen)) {
-        clear.y += Math.round(height + GAP);
-        clear.height = Math.max(clear.height - Math.round(height + GAP), 1);
-      }
+    const clear = this.clear();
     style.setProperty("--left", `${clear.x}px`);
     style.setProperty("--right", `${innerWidth - clear.x - clear.width}px`);
-    style.setProperty("--over", `${begin}px`);
+    style.setProperty("--over", `${this.aboveTray().y}px`);
     style.setProperty("--top", `${clear.y}px`);
     style.setProperty("--bottom", `${innerHeight - clear.y - clear.height}px`);
     const now = JSON.stringify(clear);
     if (now === this.box) return;
     this.box = now;
     this.changed(clear);
+  }
+
+  /** Upper edge of the bars at the bottom. */
+  private get bottom(): number {
+    return Math.min(window.innerHeight, ...this.below.flatMap(seen).map(({ top }) => top - GAP / 2));
+  }
+
+  private aboveTray(): Box {
+    const [tray] = seen(this.tray);
+    return this.largest(tray ? Math.min(this.bottom, tray.top - GAP / 2) : this.bottom);
+  }
+
+  private clear(): Box {
+    const clear = this.aboveTray();
+    if (window.innerWidth <= SMALL)
+      for (const { height } of this.over.flatMap(seen)) {
+        clear.y += Math.round(height + GAP);
+        clear.height = Math.max(clear.height - Math.round(height + GAP), 1);
+      }
+    return clear;
   }
 
   /** The largest rectangle above a line that is between the columns, or below one of them or both. */

@@ -101,6 +101,11 @@ export class Look {
     this.applying = false;
   }
 
+  /** Whether the look is shared and remembered. */
+  get settled(): boolean {
+    return !this.timer && !this.keeping;
+  }
+
   /** Something of the look has changed: it is shared and remembered. */
   private changed(): void {
     if (this.applying || this.timer) return;
@@ -204,8 +209,10 @@ export class Look {
   /** Keeps light, color and lens with the recipe, once the page that leads has changed them. */
   private keepLight(): void {
     clearTimeout(this.keeping);
+    this.keeping = 0;
     if (!this.model.role.leads || this.restored !== this.key || lightOf(this.state) === this.keptLight) return;
     this.keeping = window.setTimeout(() => {
+      this.keeping = 0;
       this.keptLight = lightOf(this.state);
       this.model.say({ kind: "keep_view", slot: 0, look: this.state });
     }, KEEP_AFTER);

@@ -36,7 +36,7 @@ export class Painter {
     this.renderer = new WebGLRenderer({ antialias: false, powerPreference: "high-performance" });
     this.renderer.autoClear = false;
     this.renderer.outputColorSpace = "srgb-linear"; // the shaders develop on their own
-    this.finest = this.ratio = software ? 1 : Math.min(devicePixelRatio, 2);
+    this.finest = this.ratio = Math.min(devicePixelRatio, software ? 1 : 2);
     this.renderer.setPixelRatio(this.finest);
     this.film = new Film(software ? 0 : 4, software);
     this.second = new Film(software ? 0 : 4, software);

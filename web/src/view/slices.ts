@@ -6,6 +6,7 @@
 export type Work<T = void> = Generator<void, T, number>;
 
 const FIRST = 1 / 512; // of a kind of work: what its first slice has, of all
+const MOST = 64; // slices of one kind of work: however busy the machine is, the work comes to its end
 
 export class Slices {
   /** Longest slice of drawing; infinite: all in one [ms]. */
@@ -18,15 +19,21 @@ export class Slices {
   /** Draws so many units of one kind, some at a time. */
   *draw(kind: string, total: number, some: (first: number, count: number) => void): Work {
     for (let first = 0; first < total; ) {
-      const size = this.drawing === Infinity ? total : (this.sizes.get(kind) ?? Math.ceil(FIRST * total));
+      const size = this.drawing === Infinity ? total : this.size(kind, total);
       const count = Math.min(size, total - first);
       some(first, count);
       first += count;
       if (this.drawing === Infinity) continue;
       const took = yield;
       if (took > 0 && (count === size || took > this.drawing))
-        this.sizes.set(kind, Math.max(1, Math.floor(Math.min(2, this.drawing / Math.max(took, 1)) * count)));
+        this.sizes.set(kind, Math.floor(Math.min(2, this.drawing / Math.max(took, 1)) * count));
     }
+  }
+
+  /** Units that the next slice has. */
+  private size(kind: string, total: number): number {
+    const size = this.sizes.get(kind);
+    return size === undefined ? Math.ceil(FIRST * total) : Math.max(size, Math.ceil(total / MOST));
   }
 
   /** Takes small steps, as many at a time as a slice is long. */

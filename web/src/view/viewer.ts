@@ -55,6 +55,8 @@ export class Viewer {
   /** Whether the camera has its place: the subject was framed once, or a look was given. */
   private placed = false;
   private wanted = false;
+  /** Whether a picture was drawn since the last change. */
+  private fresh = false;
   private moved = 0;
   /** Whether the graphics card is at work: what is next waits for it. */
   private drawing = false;
@@ -210,6 +212,11 @@ export class Viewer {
 
   /** The picture is another. What it cuts short at rest is first shown as what moves is: at once. */
   invalidate(): void {
+    this.fresh = false;
+    this.again();
+  }
+
+  private again(): void {
     if (this.rest) this.moved = performance.now();
     this.rest = null;
     this.film.drawings = 0;
@@ -292,6 +299,17 @@ export class Viewer {
     return this.drawn;
   }
 
+  /** Whether the picture shows the last change. */
+  get current(): boolean {
+    return this.fresh;
+  }
+
+  /** Whether the canvas has the size of its element. */
+  get fitted(): boolean {
+    const { size, painter } = this;
+    return painter.canvas.width === size.width && painter.canvas.height === size.height;
+  }
+
   /** Whether no picture is to come until something changes. */
   get idle(): boolean {
     return !this.wanted && !this.resting && !this.turntable && !this.drawing && !this.lacking;
@@ -323,7 +341,7 @@ export class Viewer {
       clearTimeout(this.resting);
       this.resting = window.setTimeout(() => {
         this.resting = 0;
-        this.invalidate();
+        this.again();
       }, REST_AFTER + 20);
     }
     this.advance(this.picture(moving), moving, 0);
@@ -337,6 +355,7 @@ export class Viewer {
     yield* painter.paint(view, portion, moving);
     this.lacking = moving ? 1 : Math.max(0, pace.needed(portion.fraction) - this.film.drawings);
     this.drawn++;
+    this.fresh = true;
     this.onPaint();
     return { portion, shown: Math.round(this.hair.a.count * Math.min(1, portion.fraction * this.film.drawings)) };
   }
