@@ -82,9 +82,9 @@ SKETCH = 0.2  # pixels of a picture that nobody looks at, over those of the page
 
 # Each picture is drawn once and in one go; one that nobody looks at has no light in its hair.
 ONCE = """({ lit }) => {
-    const { pace, hair } = ringlet.viewer;
+    const { pace, hair } = ringlet.viewer, { slice } = pace;
     pace.needed = () => 1;
-    pace.slice = () => ({ drawing: Infinity, computing: Infinity });
+    pace.slice = (moving) => (moving ? slice.call(pace, true) : { drawing: Infinity, computing: Infinity });
     if (!lit) for (const one of Object.values(hair)) one.light = function* () {};
 }"""
 
