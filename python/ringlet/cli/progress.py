@@ -111,10 +111,10 @@ def on_terminal() -> Iterator[Callable[[str, int, int], None]]:
         paces: dict[str, Pace] = {}
 
         def report(stage: str, done: int, total: int) -> None:
+            pace = paces.setdefault(stage, Pace(time.monotonic()))
+            pace.report(time.monotonic(), done)
             if stage not in tasks:
-                paces[stage] = Pace(time.monotonic())
-                tasks[stage] = bars.add_task(stage, total=total, since=time.monotonic(), pace=paces[stage])
-            paces[stage].report(time.monotonic(), done)
+                tasks[stage] = bars.add_task(stage, total=total, since=time.monotonic(), pace=pace)
             bars.update(tasks[stage], completed=done, total=total, since=time.monotonic())
 
         yield report

@@ -75,7 +75,7 @@ class Set(Message):
 
     kind: Literal["set"] = "set"
     file: File = "recipe"
-    changes: list[tuple[Place, Any]] = Field(max_length=256)
+    changes: list[tuple[Annotated[Place, Field(min_length=1)], Any]] = Field(max_length=256)
     gesture: Gesture
     resting: bool = True
 

@@ -10,7 +10,7 @@ from ringlet.data import limits
 
 VERSION = 11
 
-Place = Annotated[list[str | int], Field(min_length=1)]  # path of a setting in its file: ["shape", 0, "amount"]
+Place = list[str | int]  # path of a setting in its file: ["shape", 0, "amount"]; empty for the file
 File = Literal["recipe", "shot"]
 Point = tuple[float, float, float]
 Id = Annotated[int, Field(ge=-limits.ID, le=limits.ID)]

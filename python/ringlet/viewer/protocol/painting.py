@@ -16,7 +16,7 @@ class ShowMap(Message):
     """
 
     kind: Literal["show_map"] = "show_map"
-    place: Place = Field(max_length=8)
+    place: Place = Field(min_length=1, max_length=8)
 
 
 class Paint(Message):
@@ -29,7 +29,7 @@ class Paint(Message):
     """
 
     kind: Literal["paint"] = "paint"
-    place: Place = Field(max_length=8)
+    place: Place = Field(min_length=1, max_length=8)
     tool: Literal["add", "remove", "smooth", "comb"]
     at: Position
     by: Position
@@ -49,7 +49,7 @@ class Draw(Message):
     """
 
     kind: Literal["draw"] = "draw"
-    place: Place = Field(max_length=8)
+    place: Place = Field(min_length=1, max_length=8)
     points: list[Position] = Field(min_length=2, max_length=5000)
     gesture: Gesture
 
