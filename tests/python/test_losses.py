@@ -196,6 +196,7 @@ def test_groom_ids_differ_over_an_archive_and_group_ids_are_those_of_grooms(tmp_
     scene = HairScene([CurveSet("hairs", hairs), CurveSet("guides", guides, True)])
     assert write_scene(scene, tmp_path / "a.abc", StageSpace()) == []
     ids = [one.tolist() for one in scene.groom_ids]
+    assert HairScene([]).groom_ids == []
     assert len({id for every in ids for id in every}) == 5 and scene.sets[0].group_ids.tolist() == [0, 1, 1]
     with open_scene(tmp_path / "a.abc", StageSpace()) as after:
         assert [one.curves.ids.tolist() for one in after.sets] == [[10**15, 1, 2], [1, 2]]

@@ -73,7 +73,8 @@ class HairScene:
         every = np.concatenate([np.empty(0, np.int64), *(one.curves.ids for one in self.sets)])
         if len(np.unique(every)) < len(every) or np.abs(every).max(initial=0) >= 2**31:
             every = np.arange(len(every))
-        return np.split(every.astype(np.int32), np.cumsum([len(one.curves) for one in self.sets])[:-1])
+        ends = np.cumsum([len(one.curves) for one in self.sets], dtype=np.int64).tolist()
+        return [every[start:end].astype(np.int32) for start, end in zip([0, *ends], ends, strict=False)]
 
     @property
     def shown(self) -> list[CurveSet]:
