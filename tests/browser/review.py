@@ -32,7 +32,7 @@ FLAGS = [
     "--disable-component-update",
     "--disable-sync",
 ]
-PATIENCE = 90.0  # [s] for slow software rendering
+PATIENCE = 300.0  # [s] after which what is awaited is taken as missing, on a machine that is busy with other things too
 
 
 @cache
@@ -89,6 +89,11 @@ ONCE = """({ lit }) => {
 }"""
 
 
+def coarse(pixels: float) -> str:
+    """A script after which a picture has so many pixels for each of the page."""
+    return f"Object.defineProperty(window, 'devicePixelRatio', {{ get: () => {pixels} }})"
+
+
 class Review:
     """An open page of the review.
 
@@ -103,7 +108,7 @@ class Review:
             "console", lambda message: self.errors.append(message.text) if "shader" in message.text.lower() else None
         )
         if pixels is not None:
-            page.add_init_script(f"Object.defineProperty(window, 'devicePixelRatio', {{ get: () => {pixels} }})")
+            page.add_init_script(coarse(pixels))
         page.goto(address)
         self.until("window.ringlet")
         if pixels is not None:

@@ -39,7 +39,7 @@ def drawn(review: Review, *, hair: bool = True, clear: bool = False) -> NDArray[
     """The live picture."""
     show = f"ringlet.viewer.showHair({str(hair).lower()})"
     draw = f"ringlet.viewer.drawAt({SIZE}, {SIZE}, {str(clear).lower()}).toDataURL('image/png')"
-    return pixels(review.get(f"({show}, {draw})"))
+    return pixels(review.get(f"({show}, delete ringlet.viewer.pace.needed, {draw})"))  # with all its drawings
 
 
 def rendered(review: Review, size: int = SIZE, samples: int = SAMPLES) -> NDArray[np.float64]:
@@ -75,7 +75,7 @@ def test_the_live_picture_has_the_light_of_the_path_traced_one(opened: Any, fold
         f'ringlet = 2\nextends = "types/{kind}.recipe.toml"\nname = "{name}"\nlocks.count = {locks}\n'
         f'hairs.density = "8 /cm2"\nhairs.width = "0.14 mm"\nhairs.points = {points}\ncolor.preset = "{color}"\n'
     )
-    review: Review = opened("look.recipe.toml", viewport={"width": 420, "height": 420}, pixels=None)
+    review: Review = opened("look.recipe.toml", viewport={"width": 420, "height": 420}, pixels=1)
     path_traced, live = rendered(review), drawn(review)
     bare, covered = drawn(review, hair=False), drawn(review, clear=True)[:, :, 3]
     hair = np.abs(live - bare).max(axis=2) > 0.03
@@ -90,7 +90,7 @@ def test_the_live_picture_has_the_light_of_the_path_traced_one(opened: Any, fold
 
 
 def test_a_picture_at_rest_adds_drawings_until_all_hairs_are_in_it(opened: Any):
-    review: Review = opened(pixels=None)
+    review: Review = opened(viewport={"width": 420, "height": 300}, pixels=None)
     review.until("ringlet.viewer.idle")
     review.get("(window.drawings = [], ringlet.viewer.onPaint = () => drawings.push(ringlet.viewer.film.drawings))")
     review.get("(ringlet.viewer.pace.took = () => {}, ringlet.viewer.pace.whole = 2000, ringlet.viewer.invalidate())")
@@ -132,7 +132,7 @@ def test_pictures_are_fluent_while_something_moves(opened: Any):
 
 
 def test_slices_cover_the_work_once_and_none_is_long(opened: Any):
-    review: Review = opened(pixels=None)
+    review: Review = opened(viewport={"width": 420, "height": 300}, pixels=None)
     parts, times = review.get("""(() => {
         const { painter, pace } = ringlet.viewer, parts = [], times = [];
         const slices = Object.assign(new painter.slices.constructor(), pace.slice(false));
@@ -159,7 +159,7 @@ def test_slices_of_a_busy_machine_come_to_their_end(opened: Any):
 
 
 def test_a_picture_in_slices_is_that_of_one_slice(opened: Any):
-    review: Review = opened(viewport={"width": 420, "height": 300}, pixels=None)
+    review: Review = opened(viewport={"width": 420, "height": 300}, pixels=1)
     review.get("ringlet.viewer.drawNow()")
     one, many, slices = review.get("""(() => {
         const { painter, view, film, renderer } = ringlet.viewer;
@@ -180,7 +180,7 @@ def test_a_picture_in_slices_is_that_of_one_slice(opened: Any):
 
 
 def test_a_smaller_picture_shows_as_much(opened: Any):
-    review: Review = opened(viewport={"width": 640, "height": 480}, pixels=None)
+    review: Review = opened(viewport={"width": 640, "height": 480}, pixels=1)
     review.get("ringlet.viewer.drawNow()")
     whole, small = review.get("""[1, 0.25].map((scale) => {
         const { painter, view, film, renderer } = ringlet.viewer, slices = { drawing: Infinity, computing: Infinity };

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from review import Review
+from review import Review, coarse
 
 import ringlet
 
@@ -19,6 +19,7 @@ def test_a_share_page_opens_from_disk_and_turns(browser: Any, folder: Path, tmp_
     errors, asked = [], []
     page.on("pageerror", lambda error: errors.append(str(error)))
     page.on("request", lambda request: asked.append(request.url))
+    page.add_init_script(coarse(0.5))
     page.goto(output.as_uri())
     page.wait_for_function("window.look?.ready")
     assert page.title() == page.get_by_role("heading").inner_text() == "small"
