@@ -48,9 +48,8 @@ class Braids:
         offsets = offsets_from_counts(locks.counts[thick[first]])
         point = locks.point_rows(rows)
         along = np.concatenate([np.arange(count) for count in locks.counts[rows]] or [np.zeros(0, int)])
-        return cls(
-            locks, rows, offsets, point, np.repeat(offsets[:-1][braid], locks.counts[rows]) + along, radii[point]
-        )
+        middle = np.asarray(np.repeat(offsets[:-1][braid], locks.counts[rows]) + along, np.int64)
+        return cls(locks, rows, offsets, point, middle, radii[point])
 
     def __len__(self) -> int:
         return len(self.offsets) - 1

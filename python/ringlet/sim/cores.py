@@ -118,7 +118,7 @@ class Cores:
         placed = self.spread(points) + self._root_shares[:, None] * away + path
         moved = np.flatnonzero(self.of_core >= 0)
         rows, strands = whole.point_rows(moved), whole.take(moved)
-        placed[rows] = along_paths(placed[rows], strands.offsets, strands.edge_lengths())
+        placed[rows] = along_paths(placed[rows], strands.offsets, np.asarray(strands.edge_lengths(), np.float64))
         return placed
 
     @cached_property
@@ -128,7 +128,7 @@ class Cores:
 
     @cached_property
     def _rest_frames(self) -> Array:
-        return self._frames(self.groom.locks.points, self.groom.scalp.points, 0.0)
+        return self._frames(np.asarray(self.groom.locks.points, np.float64), self.groom.scalp.points, 0.0)
 
     def _frames(self, points: Array, scalp: Array, frame: float) -> Array:
         """Frames along simulated locks with those points [m], shape (n, 3, 3); rotation-minimising from the root."""
@@ -149,7 +149,7 @@ class Cores:
             offset = self._offsets[points]
             away = np.linalg.norm(offset[0])
             if away > 0.0:
-                run = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(locks[row], axis=0), axis=1))])
+                run = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(locks[int(row)], axis=0), axis=1))])
                 near = np.clip(1.0 - run / (ROOT_REACH * away), 0.0, 1.0)
                 there = np.clip(offset @ offset[0] / away**2, 0.0, 1.0)
                 shares[points] = np.minimum.accumulate(there) * near * near * (3.0 - 2.0 * near)
