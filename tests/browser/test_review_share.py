@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from review import Review, coarse
+from review import PATIENCE, Review, coarse
 
 import ringlet
 
@@ -15,6 +15,7 @@ def test_a_share_page_opens_from_disk_and_turns(browser: Any, folder: Path, tmp_
     output = tmp_path / "look.html"
     ringlet.share(folder / "small.recipe.toml", output)
     context = browser.new_context(viewport={"width": 600, "height": 500}, offline=True, reduced_motion="reduce")
+    context.set_default_timeout(1000 * PATIENCE)
     page = context.new_page()
     errors, asked = [], []
     page.on("pageerror", lambda error: errors.append(str(error)))
@@ -51,6 +52,7 @@ def test_the_review_saves_a_share_page(opened: Any, browser: Any, tmp_path: Path
     assert saved.value.suggested_filename == "small.html"
     saved.value.save_as(tmp_path / "small.html")
     context = browser.new_context(viewport={"width": 600, "height": 500}, offline=True, reduced_motion="reduce")
+    context.set_default_timeout(1000 * PATIENCE)
     page = context.new_page()
     page.goto((tmp_path / "small.html").as_uri())
     page.wait_for_function("window.look?.ready")
