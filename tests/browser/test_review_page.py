@@ -87,8 +87,8 @@ def test_pictures_and_movies_are_saved(opened: Any):
         assert (alpha[0, 0] < 10 and alpha[1000, 1000] > 245) if clear else alpha.min() == 255
     review.until("ringlet.viewer.renderer.domElement.width === 1000")  # that of the page again, once the picture rests
     film = review.page.get_by_label("Record a movie")
-    film.click()
     began = time.monotonic()
+    film.click()
     for turn in (0.3, 0.6):
         review.get(f"(ringlet.viewer.orbit({turn}, 0), ringlet.viewer.move())")
         review.until("ringlet.viewer.current")
