@@ -18,9 +18,10 @@
 namespace ringlet::RINGLET_SIMD {
 
 struct NewtonSettings {
-    int iterations;    // at most
-    double tolerance;  // a lane has converged when no unknown changes more than this [m]
-    int halvings = 40; // of a step at most; then the lane stays
+    int iterations;                // at most
+    double tolerance;              // a lane has converged when no unknown changes more than this [m]
+    int halvings = 40;             // of a step at most; then the lane stays
+    double fast_contraction = 0.1; // of a direction by the one before: a lane that contracts faster leaves curvature out
 };
 
 template <class T> struct NewtonResult {
@@ -45,8 +46,8 @@ template <class T, class Objective>
 
     typename Objective::Matrix hessian(memory.band, size);
     NewtonResult<T> result{objective.evaluate(x), T{}, T{}, T{}, T{}};
-    T active = one; // 1 while a lane still moves, else 0
-    T curved = one;
+    T active = one;         // 1 while a lane still moves, else 0
+    T curved = one, last{}; // the largest unknown of the direction before
 
     for (int iteration = 0; iteration < settings.iterations; ++iteration) {
         objective.assemble(memory.gradient, hessian, curved);
@@ -59,6 +60,9 @@ template <class T, class Objective>
             slope += memory.gradient[i] * memory.direction[i];
             largest = max(largest, abs(memory.direction[i]));
         }
+        // Gauss–Newton alone is enough where directions shrink fast.
+        curved = select(largest < settings.fast_contraction * last, T{}, curved);
+        last = largest;
         result.residual = select(active > 0.0, largest, result.residual);
         result.iterations += active;
 

@@ -43,6 +43,7 @@ public:
     // matrix without their curvature would be left in some direction: nearly singular matrices give directions that are long
     // and lead nowhere.
     void assemble(T *gradient, Matrix &hessian, T &curved) const {
+        if (!any(curved > 0.0)) return assemble(gradient, hessian);
         DefinitenessTest<Matrix, T> test;
         assemble_along_paths(
             gradient, hessian, curved,
@@ -52,8 +53,11 @@ public:
             [&](int i) { test.complete(hessian.entry(4 * i)); });
         const T kept = curved * test.definite();
         if (!any(kept != curved)) return;
-        curved = kept;
-        assemble(gradient, hessian, curved);
+        curved = kept; // a lane that passed needs no second test
+        if (any(curved > 0.0))
+            assemble_along_paths(gradient, hessian, curved, [](int, int, T) {}, [](int) {});
+        else
+            assemble(gradient, hessian);
     }
 
     // The same without that test: the matrix may be indefinite. Calls also(column, rows below, value) for what is added for
