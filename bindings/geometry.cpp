@@ -1,5 +1,6 @@
 #include "arrays.h"
 
+#include "ringlet/geometry/orientation.h"
 #include "ringlet/geometry/resample.h"
 #include "ringlet/geometry/solid.h"
 #include "ringlet/geometry/triangle_tree.h"
@@ -212,6 +213,16 @@ void bind_geometry(nb::module_ &module) {
         "root_frames", &root_frames, "points"_a, "triangles"_a, "root_triangle"_a, "root_barycentric"_a,
         "Roots on the current mesh: positions (k, 3) [m] and frames (k, 3, 3), whose columns are tangent, bitangent and\n"
         "normal. The frame moves with the material: now @ rest.T rotates what grows there from rest to now.");
+    module.def(
+        "parts_facing_inside",
+        [](const Array3<double> &points, const Array3<int> &triangles) {
+            const TriangleMesh mesh = mesh_of(points, triangles);
+            return to_numpy<int>(parts_facing_inside(mesh), {mesh.triangles.size()});
+        },
+        "points"_a, "triangles"_a,
+        "For each triangle of points (n, 3) and triangles (m, 3) that faces the inside of what its surface encloses the "
+        "number\n"
+        "of its connected part, and -1 for the others, shape (m,).");
     module.def("flat_triangles", &flat_triangles, "points"_a, "triangles"_a,
                "Mask (m,) of triangles that are thinner than a billionth of their length, or not finite.");
     module.def("carry_curves", &carry_curves, "points"_a, "offsets"_a, "turns"_a, "from_places"_a, "to_places"_a,

@@ -203,9 +203,9 @@ def test_a_missing_or_empty_region_is_refused():
 def test_an_edit_recomputes_only_what_follows_it():
     memory = Memory()
     groom(memory=memory)
-    before = {name: curves for name, (_, curves) in memory.results.items()}
+    before = {name: curves for name, (_, curves, _) in memory.results.items()}
     groom(BASE.replace("width = 0.8", "width = 0.7"), memory=memory)
-    kept = {name for name, (_, curves) in memory.results.items() if curves is before[name]}
+    kept = {name for name, (_, curves, _) in memory.results.items() if curves is before[name]}
     assert kept == {"guides", "locks"}
 
 

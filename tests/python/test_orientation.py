@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from pxr import UsdGeom, Vt
 from ringlet.api.shots import cloths_and_colliders
-from ringlet.data.orientation import facing_inside, outward
+from ringlet.deform.orientation import facing_inside, outward
 from ringlet.shot import parse_shot
 from shapes import ball, rotation, sheet
 from usd_scenes import new_stage

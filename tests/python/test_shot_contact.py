@@ -11,7 +11,7 @@ from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Clip
-from ringlet.data.orientation import winding_numbers
+from ringlet.deform.orientation import winding_numbers
 from ringlet.shot import Collider, parse_shot
 from ringlet.sim import Obstacle, simulate
 from ringlet.sim.penetration import penetration_depths

@@ -104,11 +104,15 @@ def groom_inputs(recipe: Recipe, memory: Memory | None = None, notes: list[str] 
         raise UserError(f"{where}: scalp.file is {recipe.scalp_file}, but there is no such file; check the name")
     chosen = recipe.scalp
     cage = chosen.surface == "cage"
-    scalp, meshes_of_head = _cached(
+    scalp, meshes_of_head, space = _cached(
         memory,
         recipe.scalp_file,
         f"{chosen.mesh} {chosen.surface} {chosen.space}",
-        lambda file: (io.read_mesh(file, chosen.mesh, space=chosen.space, cage=cage, notes=notes), _meshes(file, cage)),
+        lambda file: (
+            io.read_mesh(file, chosen.mesh, space=chosen.space, cage=cage, notes=notes),
+            _meshes(file, cage),
+            io.read_space(file, space=chosen.space),
+        ),
     )
     hidden = _hidden(recipe)
     textures = {name: _cached(memory, file, "texture", io.read_texture) for name, file in recipe.map_files().items()}
@@ -140,7 +144,7 @@ def groom_inputs(recipe: Recipe, memory: Memory | None = None, notes: list[str] 
         "colliders": [mesh for mesh in meshes_of_head if mesh.name != scalp.name and shows(mesh.name, hidden)],
         "scalp_file": recipe.scalp_file,
         "scalp_prim": recipe.scalp.mesh,
-        "space": io.read_space(recipe.scalp_file, space=recipe.scalp.space),
+        "space": space,
     }
 
 

@@ -375,7 +375,7 @@ def _obstacles(shot: Shot, groom: Groom, garments: Sequence[Garment], frames: tu
     """The obstacles of a shot at its frames; of several settings for one mesh the last counts."""
     from ringlet import io, sim
     from ringlet import shot as shots
-    from ringlet.data.orientation import outward
+    from ringlet.deform.orientation import outward
 
     if not shot.touching:
         return []

@@ -15,8 +15,8 @@ from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Mesh
-from ringlet.data.orientation import outward
 from ringlet.data.thickness import own_radii
+from ringlet.deform.orientation import outward
 from ringlet.groom.operators.operator import packed
 from ringlet.groom.pins import PIN
 

@@ -120,7 +120,7 @@ class EdgeScalp(Scalp):
     """A scalp whose hair grows on lines."""
 
     def __init__(self, scalp: Scalp, edge: Edge, lines: list[Array]) -> None:
-        self.__dict__.update({name: value for name, value in scalp.__dict__.items() if name != "middle"})
+        self.__dict__.update(scalp.__dict__)
         self.edge, self.lines = edge, [Line.through(places) for places in lines]
         self.length = sum(line.length for line in self.lines)
         self._places = np.concatenate([line.places for line in self.lines])
@@ -130,7 +130,7 @@ class EdgeScalp(Scalp):
         self._tree = KDTree(self._places)
 
     @property
-    def middle(self) -> Array:  # type: ignore[override]
+    def middle(self) -> Array:
         """Centre of the box around the lines [m]."""
         return 0.5 * (self._places.min(axis=0) + self._places.max(axis=0))
 

@@ -9,7 +9,6 @@ import numpy as np
 
 from ringlet.data.curves import Curves
 from ringlet.data.lengths import UNITS
-from ringlet.data.mesh import Mesh
 from ringlet.groom.edge import EdgeScalp
 from ringlet.groom.operators import Grown
 from ringlet.groom.recipe import Recipe
@@ -27,7 +26,7 @@ def odd_sizes(recipe: Recipe, scalp: Scalp, guides: Curves, locks: Curves) -> It
 
     guides: as they grow, before they are sculpted
     """
-    width = _width(scalp.mesh, recipe.scalp.region)
+    width = scalp.width
     if PLAUSIBLE_SIZES[0] <= width <= PLAUSIBLE_SIZES[1]:
         yield from _odd_lengths(recipe, scalp, width, guides, locks)
     else:
@@ -69,8 +68,3 @@ def _odd(setting: str, value: float, reason: str, recipe: Recipe, plausible: tup
 def _hair(recipe: Recipe) -> float:
     """Width of a hair [m]."""
     return recipe.hairs.width.value
-
-
-def _width(mesh: Mesh, region: str | None) -> float:
-    """The largest extent of a scalp along an axis [m]."""
-    return float(np.ptp(mesh.points[mesh.triangles[mesh.region(region)]].reshape(-1, 3), axis=0).max())

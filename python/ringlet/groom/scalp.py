@@ -13,9 +13,9 @@ from ringlet.data import limits
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
-from ringlet.data.orientation import facing_inside, outward
 from ringlet.data.painted import painted
 from ringlet.data.random import Random
+from ringlet.deform.orientation import facing_inside, outward
 
 IDS_PER_TRIANGLE = 1_000_000  # id of a grown curve: triangle · 1 000 000 + number in the triangle
 
@@ -70,10 +70,20 @@ class Scalp:
         return float(self.areas.sum())
 
     @cached_property
+    def box(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Lowest and highest corner of the region's bounding box [m], shape (3,) each."""
+        places = self.points[np.unique(self.triangles[self.region])]
+        return places.min(axis=0), places.max(axis=0)
+
+    @property
     def middle(self) -> NDArray[np.float64]:
         """Centre of the region's bounding box [m]; near the centre of the skull for the scalp of a head."""
-        places = self.points[np.unique(self.triangles[self.region])]
-        return 0.5 * (places.min(axis=0) + places.max(axis=0))
+        return 0.5 * (self.box[0] + self.box[1])
+
+    @property
+    def width(self) -> float:
+        """The largest extent of the region along an axis [m]."""
+        return float((self.box[1] - self.box[0]).max())
 
     def sample(self, count: int, seed: int, density: str | None = None, what: str = "density") -> Samples:
         """Blue-noise samples of the region, uniform or after a painted density.
@@ -299,13 +309,15 @@ def _check_region(scalp: Scalp) -> None:
             f"{scalp.where}: {flat.size} triangle(s) have no area, the first is {scalp.region[flat[0]]}; clean the mesh"
         )
     corners = scalp.triangles[scalp.region].astype(np.int64)
-    edges = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
-    _, uses = np.unique(np.sort(edges, axis=1), axis=0, return_counts=True)
+    start, end = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]]).T
+    edges = np.sort(np.minimum(start, end) * len(scalp.points) + np.maximum(start, end))
+    uses = np.diff(np.flatnonzero(np.concatenate([[True], edges[1:] != edges[:-1], [True]])))
     if uses.max() > 2:
         raise UserError(
             f"{scalp.where}: an edge is shared by {uses.max()} triangles; must be at most 2: split the surface there"
         )
-    if len(np.unique(edges, axis=0)) < len(edges):
+    sides = np.sort(start * len(scalp.points) + end)
+    if (sides[1:] == sides[:-1]).any():
         raise UserError(f"{scalp.where}: neighbouring faces have opposite orientations; make their normals agree")
     if count := int(facing_inside(scalp.points, scalp.triangles)[scalp.region].sum()):
         raise UserError(

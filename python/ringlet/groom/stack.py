@@ -59,7 +59,7 @@ class Memory:
     grooms:  caches of each groom, by name, where the recipe has several
     """
 
-    results: dict[str, tuple[str, Curves]] = field(default_factory=dict)
+    results: dict[str, tuple[str, Curves, list[str]]] = field(default_factory=dict)
     worn: dict[str, tuple[str, Sequence[Worn]]] = field(default_factory=dict)
     scalp: tuple[str, Scalp] | None = None
     files: dict[str, tuple[tuple[int, str], Any]] = field(default_factory=dict)
@@ -144,12 +144,10 @@ def make_groom(
                 recipe.locks.density,
             )
             before = curves
-            curves, key = _run(operator, curves, key, context, memory)
-            check_curves(curves, curves.points, scalp.points, name, "lower its settings, or leave it out")
+            curves, key, notes = _run(operator, curves, key, context, memory)
+            lengthened += notes
             if isinstance(operator, Shape):
                 worn += _worn(operator, before, curves, key, context, memory)
-            if isinstance(operator, Displacement):
-                lengthened += _lengthened(name, before, curves)
             if name == "guides":
                 guides = unsculpted = curves
             if name == "sculpt":
@@ -307,14 +305,19 @@ def _not_strands(locks: Curves) -> Iterator[str]:
         yield f"{error}; as it is, the groom cannot be simulated"
 
 
-def _run(operator: Operator, curves: Curves, key: str, context: Context, memory: Memory) -> tuple[Curves, str]:
-    """Returns the operator's result and its key; takes the result from the cache when the key is unchanged."""
-    key = _key(key, context.purpose.encode(), operator.model_dump_json().encode())
-    cached = memory.results.get(context.purpose)
+def _run(
+    operator: Operator, curves: Curves, key: str, context: Context, memory: Memory
+) -> tuple[Curves, str, list[str]]:
+    """The operator's result, its key and messages about it; from the cache when the key is unchanged."""
+    name = context.purpose
+    key = _key(key, name.encode(), operator.model_dump_json().encode())
+    cached = memory.results.get(name)
     if cached is None or cached[0] != key:
-        cached = (key, operator.apply(curves, context))
-        memory.results[context.purpose] = cached
-    return cached[1], key
+        made = operator.apply(curves, context)
+        check_curves(made, made.points, context.scalp.points, name, "lower its settings, or leave it out")
+        notes = list(_lengthened(name, curves, made)) if isinstance(operator, Displacement) else []
+        cached = memory.results[name] = (key, made, notes)
+    return cached[1], key, cached[2]
 
 
 def _worn(operator: Shape, before: Curves, after: Curves, key: str, context: Context, memory: Memory) -> Sequence[Worn]:

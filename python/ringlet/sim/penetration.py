@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
 from ringlet import _core
-from ringlet.data.orientation import winding_numbers
+from ringlet.data.winding import winding_numbers
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.integer]

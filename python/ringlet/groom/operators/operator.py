@@ -13,11 +13,11 @@ from ringlet import _core
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
-from ringlet.data.orientation import outward
 from ringlet.data.painted import per_lock
 from ringlet.data.quantities import Section
 from ringlet.data.random import Random
 from ringlet.data.settings import did_you_mean
+from ringlet.deform.orientation import outward
 from ringlet.groom.scalp import Scalp
 from ringlet.groom.sections import Sections
 
