@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 
+import typer.testing
 from ringlet.cli.app import app
+from typer.main import get_command
 from typer.testing import CliRunner
+
+typer.testing._get_command = cache(get_command)  # made anew for each line, it takes longer than most commands
 
 
 def run(*arguments: object):

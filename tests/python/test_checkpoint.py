@@ -6,11 +6,12 @@ import signal
 import subprocess
 import sys
 import time
+from itertools import islice
 
 import numpy as np
 import pytest
 from commands import edit
-from kills import kills
+from halts import halts
 from ringlet.cli.app import app
 from ringlet.io import open_cache, read_cache, read_touches
 from ringlet.sim import checkpoint
@@ -161,10 +162,10 @@ def test_a_kill_while_checkpoints_are_removed_leaves_what_its_own_run_alone_resu
     part, found = ended / "cache.usdc.part", []
     inputs = checkpoint.left_inputs(ended / "left")
     shutil.copytree(ended / "left", part)
-    for _ in kills(lambda: end(part)):
-        there = part.exists() and {path.name for path in part.iterdir()}
-        assert not there or there <= {"held"} or "made_from" in there
-        for run in (inputs, {**inputs, "the first frame": 9}) if there else ():
+    for _ in halts(lambda: end(part)):
+        there = {path.name for path in part.iterdir()}
+        assert there <= {"held"} or "made_from" in there
+        for run in (inputs, {**inputs, "the first frame": 9}):
             shutil.copytree(part, ended / "copy")
             try:
                 state = checkpoint.Checkpoints(ended / "copy", run).begin(resume=True)
@@ -174,8 +175,6 @@ def test_a_kill_while_checkpoints_are_removed_leaves_what_its_own_run_alone_resu
                 found += [state[0]] if state else []
                 assert state is None or run is inputs
             shutil.rmtree(ended / "copy")
-        shutil.rmtree(part, ignore_errors=True)
-        shutil.copytree(ended / "left", part)
     assert not part.exists() and sorted(found, reverse=True) == found and {*found} == {9, 6}
 
 
@@ -187,7 +186,7 @@ def test_a_run_killed_while_its_checkpoints_are_removed_is_resumed(ended, has_ca
     if not has_cache:
         cache.unlink()
     shutil.copytree(ended / "left", part)
-    next(call for call in kills(lambda: end(part)) if call == 5)
+    next(islice(halts(lambda: end(part)), 5, None))  # it is killed before its sixth call
     assert 0 < len([*part.glob("step.*")]) < 12
     result = sim(ended, "--resume")
     assert result.exit_code == 0 and not part.exists(), result.output

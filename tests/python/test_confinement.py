@@ -9,7 +9,6 @@ from pathlib import Path
 
 import pytest
 from commands import refused, run
-from kills import kills
 from pxr import Sdf
 from ringlet.data.files import replacing
 from small_example import write_example
@@ -86,21 +85,6 @@ def test_a_file_that_is_replaced_keeps_its_mode_and_is_private_while_it_is_writt
         assert stat.S_IMODE(temporary.stat().st_mode) == 0o600
         temporary.write_text("new")
     assert stat.S_IMODE((tmp_path / "out.txt").stat().st_mode) == mode
-
-
-def test_a_kill_at_any_call_leaves_the_old_file_or_the_new_one(tmp_path):
-    path, found = tmp_path / "out.txt", []
-
-    def replace():
-        with replacing(path) as temporary:
-            temporary.write_text("new")
-
-    path.write_text("old")
-    path.chmod(0o600)
-    for _ in kills(replace):
-        found.append((path.read_text(), stat.S_IMODE(path.stat().st_mode)))
-    assert {*found} == {("old", 0o600), ("new", 0o600)} and len(found) >= 5
-    assert path.read_text() == "new" and stat.S_IMODE(path.stat().st_mode) == 0o600
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root gives files away")

@@ -100,6 +100,7 @@ def write_simulation(
     path: Path | str,
     *,
     checkpoints: Path | str,
+    write_under: bool = False,
     frames: tuple[int, int] | None = None,
     allow_stale: bool = False,
     resume: bool = False,
@@ -112,6 +113,7 @@ def write_simulation(
 
     under:       the USD file that ``write_groom`` made of the groom, the layer below the cache
     checkpoints: the folder of the frames, which are written to ``path`` when all are done
+    write_under: writes ``under`` when all are done, so that an earlier cache at ``path`` keeps its groom until then
     resume:      continue an interrupted run, to the same bits; a cache of it that is whole stays as it is
     touches:     keep the contacts of every frame there too, for ``write_touches``
     on_frame:    called with each frame's number and statistics, as soon as it is done
@@ -136,6 +138,8 @@ def write_simulation(
         notes=_untouched(shot, groom),
     )
     if resume and not touches and (whole := _whole(path, made_from)):
+        if write_under:
+            io.write_groom(groom, Path(under))
         record.frames, record.statistics = whole
         return record
     for frame in sim.play(motion, last, touches=touches, progress=progress, checkpoints=kept, resume=resume):
@@ -144,6 +148,8 @@ def write_simulation(
     steps = shot.preroll + last - first + 1
     if touches:
         record.touches = sim.StoredTouches(motion, kept, steps)
+    if write_under:
+        io.write_groom(groom, Path(under))
     with io.CacheWriter(path, under, io.read_space(Path(under)), motion.cloths(0), groom.variant) as writer:
         writer.start, writer.made_from = motion.start, made_from
         for frame in sim.replay(motion, kept, steps):
@@ -170,15 +176,16 @@ def _whole(path: Path | str, made_from: str) -> tuple[list[float], list[dict[str
 def hold_checkpoints(folder: Path | str) -> AbstractContextManager[int]:
     """Locks a folder of checkpoints for this program while the block runs, also before there are any.
 
-    For programs that write other files of a run, such as its groom, before ``write_simulation``. An empty folder is
+    For programs that write other files of a run, such as its head, before ``write_simulation``. An empty folder is
     removed after the block. Gives the number of steps (frames, and those of the preroll) after which an interrupted run
     can ``resume``, 0 for none. Raises UserError where another run has locked it.
 
     Example::
 
         with ringlet.hold_checkpoints("cache.usdc.part"):
-            ringlet.write_groom(groom, "groom.usdc")
-            ringlet.write_simulation(shot, groom, "groom.usdc", "cache.usdc", checkpoints="cache.usdc.part")
+            ringlet.write_simulation(
+                shot, groom, "groom.usdc", "cache.usdc", checkpoints="cache.usdc.part", write_under=True
+            )
             ringlet.discard_checkpoints("cache.usdc.part")
     """
     from ringlet import sim

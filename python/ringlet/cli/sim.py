@@ -92,9 +92,8 @@ def sim(
                     ringlet.check_place(path, {"head": made_groom.scalp_file})
                 for conflict in made_groom.conflicts:
                     _warn(run, said, conflict)
-                if made:
-                    ringlet.write_groom(made_groom, layer)
                 if finished:
+                    ringlet.write_groom(made_groom, layer)
                     made_groom = ringlet.read_groom(layer)  # which holds the scalp
             with run.stage("simulate", output):
                 record = ringlet.write_simulation(
@@ -105,6 +104,7 @@ def sim(
                     frames=frames,
                     allow_stale=allow_stale,
                     checkpoints=folder,
+                    write_under=made and not finished,
                     resume=resume,
                     touches=contacts is not None,
                     progress=progress,

@@ -26,13 +26,13 @@ def simulate(request: requests.Simulate, progress: Progress, warn: Warn) -> dict
     part = cache.with_name(f"{cache.name}.part")
     with api.hold_checkpoints(part):
         groom = api.build_groom(recipe, progress=progress)
-        api.write_groom(groom, layer)
         record = api.write_simulation(
             shot,
             groom,
             layer,
             cache,
             checkpoints=part,
+            write_under=True,
             resume=request.resume,
             progress=progress,
             on_warning=warn,

@@ -173,14 +173,15 @@ class Document:
 
     def meet(self, text: str, edits: str) -> bool:
         """Takes in the texts on disk: a document without unsaved changes loads them as one undo step, for another they
-        become ``theirs``. Returns whether the current state changed.
+        become ``theirs``. Returns whether the current state changed. A text that is as in the current state is saved,
+        also where the other one is not: a server was killed while it wrote them.
 
         Raises UserError when they are invalid; they are then ``theirs``.
         """
         self.theirs, (text, edits) = None, _present(text, edits)
         if (text, edits) == (self.saved, self.saved_edits):
             return False
-        if (text, edits) != (self.text, self.state.edits):
+        if text not in (self.saved, self.text) or edits not in (self.saved_edits, self.state.edits):
             if self.dirty:
                 self.theirs = text, edits
                 return False
