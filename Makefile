@@ -5,7 +5,8 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 python := .venv/bin/python
 pip := $(python) -m pip install --quiet
-editable := $(pip) --no-build-isolation --config-settings=cmake.define.RINGLET_TESTS=OFF --editable
+# Names of functions are kept for those who count and profile.
+editable := $(pip) --no-build-isolation --config-settings=cmake.define.RINGLET_TESTS=OFF --config-settings=install.strip=false --editable
 
 # What the compiled part of the package is made from, and which packages there are; editing Python needs no new build.
 sources := pyproject.toml CMakeLists.txt $(wildcard cmake/* python/ringlet/*/__init__.py) $(shell find src bindings -type f)

@@ -86,7 +86,10 @@ nb::tuple root_frames(const Array3<double> &points, const Array3<int> &triangles
     std::vector<RowMajor3> frames(count);
     {
         nb::gil_scoped_release release;
-        const std::vector<Vec3> normals = vertex_normals(mesh);
+        std::vector<unsigned char> wanted(mesh.points.size(), 0);
+        for (const int t : triangle)
+            for (const int vertex : mesh.triangles[t]) wanted[vertex] = 1;
+        const std::vector<Vec3> normals = vertex_normals(mesh, wanted);
 #pragma omp parallel for schedule(static)
         for (size_t i = 0; i < count; ++i) {
             positions[i] = mesh.at(triangle[i], barycentric[i]);

@@ -31,6 +31,7 @@ pytests() { OMP_NUM_THREADS=1 $bin/python -m pytest -n 2 --durations 8 "$@"; }
 step "C++ tests" cpp_tests
 step "Python tests" pytests tests/python
 step "physics tests" pytests tests/physics
+step "counts of instructions and calls" $bin/python -m pytest -rs tests/counts # with valgrind, where there is one
 step "browser tests" pytests -rs tests/browser # in headless Chromium; where there is none they are skipped, and say so
 step "known answers (ringlet validate)" $bin/ringlet validate
 step "lints" tools/lint.sh
@@ -40,7 +41,7 @@ printf '\nThe slowest tests:\n'
 sort -rn "$slow" | head -n 8
 
 if ((${#failed[@]})); then
-    printf '\nRinglet: %d of 7 steps failed: %s\n' ${#failed[@]} "$(IFS=,; echo "${failed[*]}")"
+    printf '\nRinglet: %d of 8 steps failed: %s\n' ${#failed[@]} "$(IFS=,; echo "${failed[*]}")"
     exit 1
 fi
 printf '\nRinglet: everything holds (%d s).\n' $SECONDS

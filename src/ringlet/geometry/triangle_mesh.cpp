@@ -14,17 +14,24 @@ bool is_flat(const TriangleMesh &mesh, int triangle) {
 }
 
 std::vector<Vec3> vertex_normals(const TriangleMesh &mesh) {
+    return vertex_normals(mesh, std::vector<unsigned char>(mesh.points.size(), 1));
+}
+
+std::vector<Vec3> vertex_normals(const TriangleMesh &mesh, View<unsigned char> wanted) {
     std::vector<Vec3> normals(mesh.points.size(), Vec3::Zero());
     for (const Triangle &t : mesh.triangles) {
+        if (!(wanted[t[0]] | wanted[t[1]] | wanted[t[2]])) continue;
         const Vec3 face = (mesh.points[t[1]] - mesh.points[t[0]]).cross(mesh.points[t[2]] - mesh.points[t[0]]);
         const double twice_area = face.norm();
         if (twice_area == 0.0) continue;
         for (int k = 0; k < 3; ++k) {
+            if (!wanted[t[k]]) continue;
             const Vec3 a = mesh.points[t[(k + 1) % 3]] - mesh.points[t[k]], b = mesh.points[t[(k + 2) % 3]] - mesh.points[t[k]];
             normals[t[k]] += (std::atan2(twice_area, a.dot(b)) / twice_area) * face;
         }
     }
-    for (Vec3 &normal : normals) normal.stableNormalize();
+    for (size_t v = 0; v < normals.size(); ++v)
+        if (wanted[v]) normals[v].stableNormalize();
     return normals;
 }
 

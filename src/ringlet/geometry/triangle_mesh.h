@@ -25,6 +25,7 @@ bool is_flat(const TriangleMesh &mesh, int triangle);
 
 // Angle-weighted unit vertex normals (Thürmer and Wüthrich 1998); they are independent of the triangulation of a face.
 std::vector<Vec3> vertex_normals(const TriangleMesh &mesh);
+std::vector<Vec3> vertex_normals(const TriangleMesh &mesh, View<unsigned char> wanted); // 0 where that is 0, per vertex
 
 // Unit normal interpolated from vertex normals, continuous from triangle to triangle.
 Vec3 smooth_normal(const TriangleMesh &mesh, View<Vec3> normals, int triangle, const Vec3 &barycentric);
