@@ -79,13 +79,13 @@ def test_meshes_maps_and_regions_of_a_host_stay_apart(tmp_path, one, other):
 @pytest.mark.parametrize("suffix", ["usdc", "abc"])
 def test_curves_and_bodies_of_a_scene_stay_apart(tmp_path, suffix):
     if suffix == "abc":
-        pytest.importorskip("alembic")
+        pytest.importorskip("alembic3d")
     names = [name for name in itertools.chain(*SIMILAR) if name.strip() and not set(name) & set("/\t ")]
     triangle = np.array([[0, 0, 0], [1, 0, 0], [0, 0, 1]], float)
     bodies = [(Mesh(name, triangle + [0, k, 0], np.array([[0, 1, 2]], np.int32)), None) for k, name in enumerate(names)]
     sets = [CurveSet(name, curves(k)) for k, name in enumerate(names)]
     write_scene(HairScene(sets, bodies), tmp_path / f"scene.{suffix}", StageSpace())
-    with open_scene(tmp_path / f"scene.{suffix}") as found:
+    with open_scene(tmp_path / f"scene.{suffix}", StageSpace()) as found:
         heights = sorted(one.curves.points[0, 1] for one in found.sets)
         assert len({one.name for one in found.sets} | {mesh.name for mesh, _ in found.bodies}) == 2 * len(names)
     np.testing.assert_allclose(heights, np.arange(len(names)), atol=1e-5)

@@ -82,6 +82,36 @@ def test_a_section_outside_the_file_is_refused(tmp_path, name):
         read_meshes(tmp_path / "a.usdc")
 
 
+@pytest.fixture(scope="module")
+def counted(tmp_path_factory):
+    """A crate in which each kind of value has a number of entries of its own."""
+    path = tmp_path_factory.mktemp("counted") / "a.usdc"
+    stage = Usd.Stage.CreateNew(str(path))
+    mesh = UsdGeom.Mesh.Define(stage, "/mesh")
+    mesh.CreatePointsAttr([(k, k * k, 0.5) for k in range(1201)])
+    mesh.CreateFaceVertexIndicesAttr([k * k for k in range(1301)])
+    mesh.GetPrim().SetMetadata("apiSchemas", Sdf.TokenListOp.CreateExplicit([f"of_{k}" for k in range(1401)]))
+    mesh.GetPrim().SetChildrenReorder([f"child_{k}" for k in range(1501)])
+    for frame in range(1601):
+        mesh.GetExtentAttr().Set([(0, 0, 0), (1, 1, frame)], frame)
+    stage.Save()
+    return path.read_bytes()
+
+
+@pytest.mark.parametrize("entries", [1201, 1301, 1401, 1501, 1601])
+def test_a_value_of_more_entries_than_the_file_can_hold_is_refused(counted, tmp_path, entries):
+    """Numbers, packed numbers, a list, names, times and the values at times; a billion of them took 75 s and 12 GB."""
+    path, places = tmp_path / "a.usdc", [counted.find(struct.pack("<Q", entries))]
+    while (more := counted.find(struct.pack("<Q", entries), places[-1] + 1)) >= 0:
+        places.append(more)
+    path.write_bytes(counted)
+    read_meshes(path)
+    for place in places:
+        path.write_bytes(counted[:place] + struct.pack("<Q", 2**30) + counted[place + 8 :])
+        with pytest.raises(UserError, match=r"a\.usdc: cannot be read as USD \(damaged: 1073741824 entries are not in"):
+            read_meshes(path)
+
+
 @pytest.mark.parametrize("arc", ["sublayer", "reference", "payload", "clip", "template"])
 def test_layers_under_a_file_are_checked_too(tmp_path, arc):
     write_head(tmp_path / "head.usdc")

@@ -72,7 +72,6 @@ def reading(path: Path | str, cage: bool | None = None) -> Iterator[Source]:
         raise UserError(f"{path}: there is no such file; check the name")
     if path.is_dir():
         raise UserError(f"{path}: is a folder; give a USD file")
-    check_bytes(path)
     if path.is_file() and not path.stat().st_size:
         raise UserError(f"{path}: is empty; write it again or choose another")
     with reading_more(path):
