@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import importlib.util
+import re
+import tomllib
+from importlib.metadata import packages_distributions
 from pathlib import Path
 
 import pytest
@@ -70,3 +73,14 @@ def test_allowed_imports_are_not_reported(problems, tmp_path):
         (tmp_path / file).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / file).write_text(text)
     assert problems(tmp_path) == []
+
+
+def test_what_a_test_is_skipped_without_is_a_module_of_a_declared_dependency():
+    """A test that asks for a module which no dependency brings is skipped for ever."""
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
+    declared = {re.split(r"[^\w.-]", one)[0].lower() for every in extras.values() for one in every}
+    texts = [path.read_text() for path in (ROOT / "tests").rglob("*.py")]
+    asked = {name for text in texts for name in re.findall(r'(?:importorskip|find_spec)\("(\w+)', text)}
+    brought = packages_distributions()
+    unknown = {n for n in asked if declared.isdisjoint(d.lower() for d in brought.get(n, [n.replace("_", "-")]))}
+    assert len(asked) > 5 and unknown == set()
