@@ -67,12 +67,28 @@ def test_files_other_than_usd_are_refused(tmp_path, capfd, name, content, says):
     assert capfd.readouterr().err == ""  # messages of USD are suppressed
 
 
+def retype(mesh, name, kind, values):
+    """Gives an attribute another type than that of its schema, as a damaged or hand-written file does."""
+    mesh.GetPrim().RemoveProperty(name)
+    spec = mesh.GetPrim().GetStage().GetRootLayer().GetPrimAtPath(mesh.GetPath())
+    Sdf.AttributeSpec(spec, name, kind).default = values
+
+
 @pytest.mark.parametrize(
     ("change", "says"),
     [
         (lambda m: m.CreatePointsAttr([]), "/head/skin: has no points"),
         (lambda m: m.GetPointsAttr().Block(), "/head/skin: has no points"),
         (lambda m: m.CreatePointsAttr([Gf.Vec3f(0, float("inf"), 0)] * 8), "point 0 is .*inf.*; must be finite"),
+        (
+            lambda m: retype(m, "points", Sdf.ValueTypeNames.FloatArray, [1.0] * 8),
+            "points are no rows of three numbers",
+        ),
+        (lambda m: retype(m, "points", Sdf.ValueTypeNames.Float2Array, [(1, 2)] * 6), "points are no rows of three"),
+        (
+            lambda m: retype(m, "primvars:displayColor", Sdf.ValueTypeNames.StringArray, ["red"]),
+            "displayColor are no rows of three numbers",
+        ),
         (lambda m: m.CreateFaceVertexCountsAttr([]), "/head/skin: has no faces"),
         (lambda m: m.CreateFaceVertexCountsAttr([4] * 5), "its faces have 20 corners, but there are 24 indices"),
         (lambda m: m.CreateFaceVertexCountsAttr([4] * 5 + [2, 2]), "face 5 has 2 corners; must have at least 3"),

@@ -30,7 +30,7 @@ from ringlet.io.usd.place import Place, placed
 from ringlet.io.usd.stage import Source, parse_json, reading, reading_more
 from ringlet.io.usd.stream import StreamWriter
 from ringlet.io.usd.surfaces import shown_surfaces
-from ringlet.io.usd.values import Types
+from ringlet.io.usd.values import Types, triples
 
 LAG = f"{OWN}lag"
 
@@ -110,7 +110,7 @@ class CacheFile:
         """
         with reading_more(self._source.path):
             time = Usd.TimeCode(float(frame))
-            points = np.array(self._points.Get(time), np.float32).reshape(-1, 3)
+            points = triples(self._points.Get(time), f"{self._source.path}: its points", np.float32)
             points = placed(points, self._points.GetPrim(), time)
         if len(points) != self.size:
             raise UserError(

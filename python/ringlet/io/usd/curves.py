@@ -36,6 +36,7 @@ from ringlet.io.usd.values import (
     rows,
     set_primvar,
     transformed,
+    triples,
 )
 
 OWN = "ringlet:"
@@ -121,7 +122,7 @@ def own_curves(source: Source, prim: Usd.Prim, time: Usd.TimeCode | None = None,
     """
     where, time = source.where(prim), time or Usd.TimeCode.Default()
     value = UsdGeom.PointBased(prim).GetPointsAttr().Get(time)
-    local = np.array(value if value is not None else [], dtype).reshape(-1, 3)
+    local = triples(value, f"{where}: its points", dtype)
     points = to_metres(placed(local, prim, time), source.space)
     counts = _counts(prim, time, len(points), where)
     primvar = UsdGeom.PrimvarsAPI(prim).GetPrimvar(f"{OWN}id")

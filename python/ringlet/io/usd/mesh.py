@@ -33,6 +33,7 @@ from ringlet.io.usd.values import (
     read_time,
     set_primvar,
     transformed,
+    triples,
     vector_primvars,
 )
 
@@ -302,7 +303,7 @@ def _color(prim: Usd.Prim, time: Usd.TimeCode, surface: Triangles) -> dict[str, 
     """
     primvar = UsdGeom.PrimvarsAPI(prim).FindPrimvarWithInheritance("displayColor")
     values = flattened(primvar, time) if primvar else None
-    colors = np.array(values if values is not None else [], np.float64).reshape(-1, 3)
+    colors = triples(values, f"{surface.where}: its displayColor")
     if len(colors) == 0:
         return {}
     check_attribute("displayColor", colors, surface.where, "value", lambda row: f"value {row}")

@@ -124,9 +124,17 @@ def read_points(prim: Usd.Prim, time: Usd.TimeCode, where: str) -> NDArray[np.fl
     """Points of a mesh or of curves in local space, shape (n, 3); raises UserError for none or not finite ones."""
     attribute = UsdGeom.PointBased(prim).GetPointsAttr()
     value = attribute.Get(read_time(time, attribute))
-    points = np.array(value if value is not None else [], np.float64).reshape(-1, 3)
+    points = triples(value, f"{where}: its points")
     check_points(points, where)
     return points
+
+
+def triples(value: Any, what: str, dtype: type = np.float64) -> NDArray:
+    """Rows of three numbers, shape (n, 3), of a value of USD; empty for None. Raises UserError for another type."""
+    rows = np.array(value if value is not None else [], dtype if value is None else None)
+    if rows.size and (rows.dtype.kind not in "biuf" or rows.shape[-1] != 3 or rows.ndim > 2):
+        raise UserError(f"{what} are no rows of three numbers; export it again")
+    return rows.astype(dtype).reshape(-1, 3)
 
 
 def read_integers(attribute: Usd.Attribute, time: Usd.TimeCode, where: str) -> NDArray[np.int64]:
