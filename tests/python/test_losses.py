@@ -12,8 +12,10 @@ from ringlet.data.groom import GROOM
 from ringlet.data.hair_scene import CurveSet, HairScene
 from ringlet.data.stage import StageSpace
 from ringlet.io import open_scene, write_scene
+from ringlet.io.formats import ROWS
+from ringlet.io.hair import COLOR, HEADER, POINTS, TRANSPARENCY, read_hair
 
-from ringlet import convert
+from ringlet import UserError, convert
 
 HAS_ALEMBIC = importlib.util.find_spec("alembic3d") is not None
 needs_alembic = pytest.mark.skipif(not HAS_ALEMBIC, reason="alembic3d is not installed: pip install 'ringlet[alembic]'")
@@ -194,10 +196,123 @@ def test_groom_ids_differ_over_an_archive_and_group_ids_are_those_of_grooms(tmp_
     hairs.curve[GROOM] = np.array([0, 1, 1], np.int32)
     guides = Curves.from_list([np.array([[k, 0, 0], [k, 1, 0]], float) for k in range(2)], [1, 2])
     scene = HairScene([CurveSet("hairs", hairs), CurveSet("guides", guides, True)])
-    assert write_scene(scene, tmp_path / "a.abc", StageSpace()) == []
+    assert write_scene(scene, tmp_path / "a.abc", StageSpace()) == (scene, [])
     ids = [one.tolist() for one in scene.groom_ids]
     assert HairScene([]).groom_ids == []
     assert len({id for every in ids for id in every}) == 5 and scene.sets[0].group_ids.tolist() == [0, 1, 1]
     with open_scene(tmp_path / "a.abc", StageSpace()) as after:
         assert [one.curves.ids.tolist() for one in after.sets] == [[10**15, 1, 2], [1, 2]]
         assert after.sets[0].curves.curve["groom_group_id"].tolist() == [0, 1, 1]
+
+
+@needs_alembic
+@pytest.mark.parametrize("kind", ["OPolyMesh", "OSubD"])
+def test_what_a_mesh_of_an_archive_has_is_kept_or_named_as_lost(tmp_path, kind):
+    from alembic3d import Abc, AbcGeom
+    from imath import FloatArrayFromBuffer, IntArrayFromBuffer, V2fArrayFromBuffer, V3fArrayFromBuffer
+
+    archive = Abc.OArchive(str(tmp_path / "a.abc"))
+    schema = getattr(AbcGeom, kind)(archive.getTop(), "skin").getSchema()
+    sample = getattr(AbcGeom, f"{kind}SchemaSample")()
+    corners = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0], [2, 1, 0]], np.float32)
+    sample.setPositions(V3fArrayFromBuffer(corners))
+    sample.setFaceCounts(IntArrayFromBuffer(np.array([4, 4], np.int32)))
+    sample.setFaceIndices(IntArrayFromBuffer(np.array([0, 3, 2, 1, 1, 2, 5, 4], np.int32)))
+    vertex = AbcGeom.GeometryScope.kVertexScope
+    uv = V2fArrayFromBuffer(np.ascontiguousarray(corners[:, :2] / 2))  # a sample of OSubD does not keep it
+    given = AbcGeom.OV2fGeomParamSample(uv, vertex)
+    sample.setUVs(given)
+    if kind == "OPolyMesh":
+        sample.setNormals(AbcGeom.ON3fGeomParamSample(V3fArrayFromBuffer(corners), vertex))
+    schema.set(sample)
+    wet = AbcGeom.OFloatGeomParam(schema.getArbGeomParams(), "wet", False, vertex, 1)
+    wet.set(AbcGeom.OFloatGeomParamSample(FloatArrayFromBuffer(np.ones(6, np.float32)), vertex))
+    Abc.OStringProperty(schema.getUserProperties(), "artist").setValue("me")
+    chosen = AbcGeom.OFaceSetSchemaSample()
+    chosen.setFaces(IntArrayFromBuffer(np.array([1], np.int32)))
+    schema.createFaceSet("scalp").getSchema().set(chosen)
+    del archive, schema, sample, wet, chosen
+    lost = "\n".join(convert(tmp_path / "a.abc", tmp_path / "b.usdc")["lost"])
+    with open_scene(tmp_path / "b.usdc") as scene:
+        ((mesh, _),) = scene.bodies
+    assert mesh.uv is not None
+    np.testing.assert_allclose(mesh.uv, mesh.points[mesh.triangles][..., :2] / 0.02, atol=1e-6)
+    assert mesh.regions["scalp"].tolist() == [2, 3] and mesh.points[mesh.triangles[2:]][..., 0].min() >= 0.01
+    assert "skin: surfaces of an archive are read without artist, wet" in lost
+    assert ("as its cage" if kind == "OSubD" else "normals") in lost
+
+
+def test_curves_of_a_prim_are_hairs_or_guides_each(tmp_path):
+    stage, curves = stage_of(tmp_path / "a.usda", [1.0, 2.0])
+    marks = UsdGeom.PrimvarsAPI(curves).CreatePrimvar("groom_guide", Types.IntArray, "uniform")
+    marks.Set([0, 1, 0])
+    stage.Save()
+    done = convert(tmp_path / "a.usda", tmp_path / "b.usda")
+    assert (done["hairs"], done["guides"], done["lost"]) == (2, 1, [])
+    with open_scene(tmp_path / "b.usda") as scene:
+        found = {(one.name, one.guide): one.points(2.0)[:, 0] for one in scene.sets}
+    assert {key: len(points) for key, points in found.items()} == {("hairs", False): 12, ("guides", True): 4}
+    np.testing.assert_allclose(found["guides", True], 0.02 + 0.12 * 2 / 25, atol=1e-6)
+
+
+@pytest.mark.parametrize("marks", [(Types.StringArray, ["no", "yes", "no"]), (Types.IntArray, [1, 1, 1])])
+def test_marks_that_do_not_divide_a_prim_leave_it_whole(tmp_path, marks):
+    stage, curves = stage_of(tmp_path / "a.usda")
+    UsdGeom.PrimvarsAPI(curves).CreatePrimvar("groom_guide", marks[0], "uniform").Set(marks[1])
+    stage.Save()
+    lost = convert(tmp_path / "a.usda", tmp_path / "b.usda")["lost"]
+    with open_scene(tmp_path / "b.usda") as scene:
+        assert [(one.name, one.guide) for one in scene.sets] == [("hair", marks[0] == Types.IntArray)]
+    assert marks[0] == Types.IntArray or "groom_guide" in " ".join(lost)
+
+
+@pytest.mark.parametrize("arrays", [True, False])
+def test_colour_and_transparency_of_a_hair_file_are_kept(tmp_path, arrays):
+    """A file without these arrays has them in its header, for all hairs."""
+    flags = POINTS | (TRANSPARENCY | COLOR if arrays else 0)
+    body = np.array([[0, 0, 0], [0, 1, 0]], "<f4").tobytes()
+    if arrays:
+        body += np.array([0.25, 0.75, 0.2, 0.4, 0.6, 0.1, 0.1, 0.3], "<f4").tobytes()
+    header = HEADER.pack(b"HAIR", 1, 2, flags, 1, 0.1, 0.25, 0.2, 0.4, 0.6, b"")
+    (tmp_path / "a.hair").write_bytes(header + body)
+    assert convert(tmp_path / "a.hair", tmp_path / "b.usda")["lost"] == []
+    lost = " ".join(convert(tmp_path / "b.usda", tmp_path / "c.hair")["lost"])
+    assert "color" not in lost and "displayOpacity" not in lost
+    again = read_hair(tmp_path / "c.hair", StageSpace()).point
+    np.testing.assert_allclose(again["displayOpacity"], [0.75, 0.25] if arrays else [0.75, 0.75], atol=1e-7)
+    np.testing.assert_allclose(again["color"], [[0.2, 0.4, 0.6], [0.1, 0.1, 0.3] if arrays else [0.2, 0.4, 0.6]])
+
+
+def test_a_transparency_outside_0_to_1_is_refused(tmp_path):
+    header = HEADER.pack(b"HAIR", 1, 2, POINTS, 1, 0.1, 1.5, 1.0, 1.0, 1.0, b"")
+    (tmp_path / "a.hair").write_bytes(header + np.arange(6, dtype="<f4").tobytes())
+    with pytest.raises(UserError, match=r"a\.hair: displayOpacity is -0\.5 on curve 0; must be from 0 to 1"):
+        read_hair(tmp_path / "a.hair", StageSpace())
+
+
+@pytest.mark.parametrize("suffix", [".usda", abc, ".hair", ".tfx", ".obj"])
+def test_points_are_counted_as_they_are_written(tmp_path, suffix):
+    stage_of(tmp_path / "a.usda")[0].Save()
+    done = convert(tmp_path / "a.usda", tmp_path / f"b{suffix}")
+    with open_scene(tmp_path / f"b{suffix}") as scene:
+        assert (done["hairs"], done["points"]) == (3, len(scene.sets[0].curves.points))
+    assert done["points"] == (24 if suffix == ".tfx" else sum(COUNTS))
+
+
+@pytest.mark.parametrize("interpolation", ["constant", "uniform", "vertex"])
+@pytest.mark.parametrize("suffix", [".usda", abc, ".hair", ".tfx"])
+def test_an_attribute_of_another_type_than_its_name_has_is_named(tmp_path, suffix, interpolation):
+    """Texts, and rows of four numbers, where the format has a place for other ones."""
+    source, wrong = tmp_path / "a.usda", []
+    count = {"constant": 1, "uniform": len(COUNTS), "vertex": sum(COUNTS)}[interpolation]
+    for name in (*ROWS.keys() - {"displayColor"}, "color"):
+        for kind in (Types.StringArray, Types.Float4Array):
+            source.unlink(missing_ok=True)
+            stage, curves = stage_of(source)
+            UsdGeom.PrimvarsAPI(curves).CreatePrimvar(name, kind, interpolation).Set(values_of(kind, count))
+            stage.Save()
+            own = name == "color" and suffix == ".usda"  # to USD one like any other
+            if name not in " ".join(convert(source, tmp_path / f"b{suffix}")["lost"]) and not own:
+                wrong.append((name, str(kind)))
+            del stage, curves
+    assert wrong == []

@@ -90,19 +90,18 @@ def convert(
         if one_pose:
             scene = scene.posed(scene.frames[0])
         if rod is None:
-            lost = io.write_scene(scene, target, space)
+            written, lost = io.write_scene(scene, target, space)
         else:
-            scene, lost = _simulated(scene)
-            io.write_deformable_scene(scene, rod, Path(target), space)
+            written, lost = _simulated(scene)
+            io.write_deformable_scene(written, rod, Path(target), space)
         if one_pose:
             lost.insert(0, f"{kind.name} holds one pose: that of frame {scene.frames[0]:g}")
-    written = scene.sets if kind.several else scene.shown
     return {
-        "hairs": sum(len(one.curves) for one in written if not one.guide),
-        "guides": sum(len(one.curves) for one in written if one.guide),
-        "points": sum(len(one.curves.points) for one in written),
-        "bodies": len(scene.bodies) if kind.several else 0,
-        "frames": len(scene.frames) if kind.several else 0,
+        "hairs": sum(len(one.curves) for one in written.sets if not one.guide),
+        "guides": sum(len(one.curves) for one in written.sets if one.guide),
+        "points": sum(len(one.curves.points) for one in written.sets),
+        "bodies": len(written.bodies),
+        "frames": len(written.frames),
         "unit": space.meters_per_unit,
         "up": space.up_axis,
         "lost": lost,

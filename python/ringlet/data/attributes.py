@@ -43,3 +43,8 @@ def check_attribute(name: str, values: NDArray, what: str, rows: str, place: Cal
         value, bound = values[tuple(bad[0])], f"from {least:g} to {most:g}"
         bound = bound if np.isfinite(most) else f"at least {least:g} and finite"
         raise UserError(f"{what}: {name} is {value:g} on {place(int(bad[0, 0]))}; must be {bound}")
+
+
+def fits(values: NDArray, row: tuple[int, ...]) -> bool:
+    """Whether an attribute has numbers in rows of a shape, such as (3,)."""
+    return values.dtype.kind in "biuf" and values.shape[1:] == row

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ringlet.data.attributes import fits
 from ringlet.data.curves import Curves
 from ringlet.data.groom import GROOM
 from ringlet.data.mesh import Clip, Mesh
@@ -36,6 +37,22 @@ class CurveSet:
         """Unreal's ``groom_group_id``: as read, else the row of the groom of each curve; 0 for a single groom."""
         curve = self.curves.curve
         return curve.get("groom_group_id", curve.get(GROOM, np.zeros(len(self.curves)))).astype(np.int32)
+
+    def apart(self) -> list[CurveSet]:
+        """Hairs and guides in sets of their own, where the attribute ``groom_guide`` says which curves are which."""
+        marks = self.curves.curve.get("groom_guide")
+        if marks is None or not fits(marks, ()):
+            return [self]
+        curve = {name: values for name, values in self.curves.curve.items() if name != "groom_guide"}
+        plain, made = replace(self, curves=replace(self.curves, curve=curve)), list[CurveSet]()
+        if self.guide or (marks > 0).all() or not (marks > 0).any():
+            return [replace(plain, guide=self.guide or bool((marks > 0).all()))]
+        for name, guide in (("hairs", False), ("guides", True)):
+            chosen = np.flatnonzero((marks > 0) == guide)
+            rows, motion = plain.curves.point_rows(chosen), self.motion
+            moved = None if motion is None else (lambda frame, rows=rows, motion=motion: motion(frame)[rows])
+            made.append(replace(plain, name=name, curves=plain.curves.take(chosen), guide=guide, motion=moved))
+        return made
 
     def points(self, frame: float | None) -> NDArray[np.floating]:
         """Positions at a frame [m], shape (points, 3); the rest pose for None."""

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet.data import limits
+from ringlet.data.attributes import fits
 from ringlet.data.curves import Curves, id_halves, pop_id_halves
 from ringlet.data.errors import UserError
 from ringlet.data.files import replacing
@@ -233,7 +234,6 @@ class _Reader:
         rest = curves.point.pop("rest", None)
         if rest is not None and rest.shape == curves.points.shape and np.isfinite(rest).all():
             curves.points = self._in_world(rest.astype(np.float64), above, None)
-        guide = curves.curve.pop("groom_guide", np.zeros(len(ids)))
         if not curves.curve.get("groom_group_id", np.ones(1)).any():  # one group
             del curves.curve["groom_group_id"]
         root_uv = curves.curve.pop("groom_root_uv", None)
@@ -245,18 +245,44 @@ class _Reader:
         exact = pop_id_halves(curves.curve)
         curves.ids = curves.ids if exact is None else exact
         curves.check(where)
-        for wanted in (False, True):
-            chosen = np.flatnonzero((guide > 0) == wanted)
-            if len(chosen):
-                name = self.names[id(schema)] if len(chosen) == len(ids) else ("guides" if wanted else "hairs")
-                yield CurveSet(name, curves.take(chosen), wanted, _chosen(motion, curves, chosen) if moves else None)
+        yield from CurveSet(self.names[id(schema)], curves, motion=motion if moves else None).apart()
+
+    def _regions(self, schema: Any, faces: NDArray, count: int) -> dict[str, NDArray[np.int32]]:
+        """Sets of faces as sets of triangles, by name; raises UserError for a face out of range."""
+        regions = dict[str, NDArray[np.int32]]()
+        for name in schema.getFaceSetNames():
+            sample = schema.getFaceSet(name).getSchema().getValue(self._first())
+            chosen = np.array(sample.getFaces(), np.int64)
+            if ((chosen < 0) | (chosen >= count)).any():
+                raise UserError(
+                    f"{self._where(schema)}/{name}: names a face that is not among {count}; export it again"
+                )
+            regions[name] = np.flatnonzero(np.isin(faces, chosen)).astype(np.int32)
+        return regions
+
+    def _tell_unread_of_mesh(self, schema: Any, has_uv: bool) -> None:
+        """Notes what a mesh of the archive has and the one that is read has not."""
+        unheld, lost = self._named(schema), list[str]()
+        if schema.getUVsParam().valid() and not has_uv:
+            unheld.add(schema.getUVsParam().getName())
+        if unheld:
+            lost.append(f"surfaces of an archive are read without {', '.join(sorted(unheld))}")
+        if isinstance(schema, self.library.geom.ISubDSchema):
+            lost.append("its subdivision surface is read as its cage")
+        elif schema.getNormalsParam().valid():
+            lost.append("its normals are not read; surfaces are smooth")
+        if schema.getVelocitiesProperty().valid() and schema.getNumSamples() < 2:
+            lost.append("its velocities are not read; the motion is that of its points")
+        self.unread += [f"{self.names[id(schema)]}: {one}" for one in lost]
+
+    def _named(self, schema: Any) -> set[str]:
+        """Names of the arbitrary parameters and user properties of a schema."""
+        found = [one for one in (schema.getArbGeomParams(), schema.getUserProperties()) if one.valid()]
+        return {one.getPropertyHeader(k).getName() for one in found for k in range(one.getNumProperties())}
 
     def _tell_unread(self, schema: Any, sample: Any, curves: Curves, moves: bool) -> None:
         """Notes what curves of the archive have and those that are read have not."""
-        name, parameters = self.names[id(schema)], schema.getArbGeomParams()
-        count = parameters.getNumProperties() if parameters.valid() else 0
-        headers = [parameters.getPropertyHeader(k) for k in range(count)]
-        unheld = {header.getName() for header in headers} - {*curves.curve, *curves.point}
+        name, unheld = self.names[id(schema)], self._named(schema) - {*curves.curve, *curves.point}
         lost = [f"{', '.join(sorted(unheld))} have no type or length of attributes of curves"] if unheld else []
         if schema.getNormalsParam().valid():
             lost.append("its normals are not used, since hairs are round")
@@ -323,9 +349,13 @@ class _Reader:
         check_polygons(counts, indices, len(points), where)
         corners, faces = triangulate(points, counts, indices, clockwise=True)
         uv, parameter = None, schema.getUVsParam()
-        if parameter.valid() and str(parameter.getScope()) == "kFacevaryingScope":
-            values = self._values(parameter)
-            uv = values[corners].astype(np.float64) if len(values) == len(indices) else None
+        if parameter.valid():
+            values, scope = self._values(parameter), str(parameter.getScope())
+            if scope == "kFacevaryingScope" and len(values) == len(indices):
+                uv = values[corners].astype(np.float64)
+            elif scope in ("kVertexScope", "kVaryingScope") and len(values) == len(points):
+                uv = values[indices[corners]].astype(np.float64)
+        self._tell_unread_of_mesh(schema, uv is not None)
         mesh = Mesh(
             name=f"{self.path.name} {self.names[id(schema)]}",
             points=points,
@@ -333,6 +363,7 @@ class _Reader:
             uv=uv,
             faces=faces.astype(np.int32),
             places=polygon_places(counts)[corners],
+            regions=self._regions(schema, faces, len(counts)),
         )
         moves = any(timed.getNumSamples() > 1 for timed in (schema, *above))
         if not moves or not len(frames):
@@ -341,14 +372,6 @@ class _Reader:
         if any(at.shape != points.shape for at in clip):
             raise UserError(f"{where}: its number of points changes over time; export it with one topology")
         return mesh, Clip(frames, np.stack(clip), self.fps)
-
-
-def _chosen(motion: Callable[[float], NDArray], curves: Curves, chosen: NDArray) -> Callable[[float], NDArray]:
-    """The motion of the chosen curves alone."""
-    if len(chosen) == len(curves):
-        return motion
-    rows = curves.point_rows(chosen)
-    return lambda frame: motion(frame)[rows]
 
 
 def read_alembic_curves(path: Path, prim: str | None, space: StageSpace) -> Curves:
@@ -466,7 +489,8 @@ def unreal_attributes(one: CurveSet, ids: NDArray[np.int32]) -> Iterator[tuple[s
     if "st" in curves.curve:
         yield "groom_root_uv", curves.curve["st"].astype(np.float32), "uniform"
     kinds = {"vertex": curves.point, "uniform": curves.curve}
-    colors = [(scope, name) for name in COLORS for scope, kind in kinds.items() if name in kind][:1]
+    known = [(scope, name) for name in COLORS for scope, kind in kinds.items() if name in kind]
+    colors = [(scope, name) for scope, name in known if fits(kinds[scope][name], (3,))][:1]
     for scope, name in colors:
         values = kinds[scope][name]
         values = values if scope == "vertex" else np.repeat(values, curves.counts, axis=0)

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ringlet.data.attributes import fits
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.hair_scene import CurveSet, HairScene
@@ -24,6 +25,16 @@ from ringlet.io.usd.scene import open_usd_scene, unwritten_in_usd, write_usd_sce
 
 UNREAL_POINTS = 255  # of a curve, which Unreal numbers by a byte
 METRES, CENTIMETRES = StageSpace(), StageSpace(0.01)
+# Shapes of one value of attributes that have a type of their own in USD or Alembic.
+ROWS = {name: () for name in ("groom_group_id", "groom_guide", "skinprim", "guide_curve_index", "clumpid")}
+ROWS |= {
+    "st": (2,),
+    "groom_root_uv": (2,),
+    "skinprimuv": (2,),
+    "surface_uv_coordinate": (2,),
+    "groom_color": (3,),
+    "displayColor": (3,),
+}
 
 
 @dataclass(frozen=True)
@@ -34,7 +45,8 @@ class Format:
     widths:  ``point``, ``curve`` or ``none``
     sizes:   numbers of points of a curve, of which all curves have one; empty for any
     named:   further attributes, with names
-    kept:    attributes besides widths of a format without names, and whether each is of a ``curve`` or a ``point``
+    kept:    attributes besides widths of a format without names: whether each is of a ``curve`` or a ``point``, and the
+             shape of one value
     space:   unit and up-axis that a file is taken to have; None where the file says
     """
 
@@ -43,7 +55,7 @@ class Format:
     widths: str = "none"
     sizes: tuple[int, ...] = ()
     named: bool = False
-    kept: dict[str, str] = field(default_factory=dict)
+    kept: dict[str, tuple[str, tuple[int, ...]]] = field(default_factory=dict)
     space: StageSpace | None = METRES
     read: Callable[[Path, StageSpace], Curves] | None = None
     write: Callable[[Curves, Path, StageSpace], None] | None = None
@@ -55,8 +67,16 @@ FORMATS = {
     ".usda": USD,
     ".usdc": USD,
     ".abc": Format("Alembic", several=True, widths="point", named=True, space=CENTIMETRES),
-    ".hair": Format(".hair", widths="point", kept={"color": "point"}, read=read_hair, write=write_hair),
-    ".tfx": Format(".tfx", widths="curve", sizes=TFX_SIZES, kept={"st": "curve"}, read=read_tfx, write=write_tfx),
+    ".hair": Format(
+        ".hair",
+        widths="point",
+        kept={"color": ("point", (3,)), "displayOpacity": ("point", ())},
+        read=read_hair,
+        write=write_hair,
+    ),
+    ".tfx": Format(
+        ".tfx", widths="curve", sizes=TFX_SIZES, kept={"st": ("curve", (2,))}, read=read_tfx, write=write_tfx
+    ),
     ".obj": Format("OBJ", read=read_obj_curves, write=write_obj_curves),
 }
 
@@ -91,24 +111,44 @@ def open_scene(path: Path | str, space: StageSpace | None = None) -> Iterator[Ha
         yield scene
 
 
-def write_scene(scene: HairScene, path: Path | str, space: StageSpace) -> list[str]:
-    """Writes a scene in a format, and returns a sentence for each thing that the format cannot hold.
+def write_scene(scene: HairScene, path: Path | str, space: StageSpace) -> tuple[HairScene, list[str]]:
+    """Writes a scene in a format.
 
     space: unit and up-axis of the file
+
+    Returns the scene as it is in the file, and a sentence for each thing that the format cannot hold.
 
     Raises UserError for a scene without curves, in a format that holds nothing else.
     """
     path, kind = Path(path), format_of(path)
     if path.suffix.lower() == ".usdz":
         raise UserError(f"{path}: packages are not written; name a .usdc, .usd or .usda file")
+    scene = _typed(scene)
     if kind.write is None:
         (write_usd_scene if kind is USD else write_alembic)(scene, path, space)
-        return [*scene.unread, *_unheld(scene, kind)]
+        return scene, [*scene.unread, *_unheld(scene, kind)]
     if not scene.sets:
         raise UserError(f"{path}: there are no curves to write, and {kind.name} holds nothing else")
     curves, lost = _one_set(scene, kind)
     kind.write(curves, path, space)
-    return [*scene.unread, *lost]
+    written = CurveSet("hairs", curves, guide=scene.shown[0].guide)
+    return HairScene([written], space=scene.space), [*scene.unread, *lost]
+
+
+def _typed(scene: HairScene) -> HairScene:
+    """The scene without the attributes of other types than their names have; it notes these as unread."""
+    kinds = [kind for one in scene.sets for kind in (one.curves.curve, one.curves.point)]
+    wrong = {name for kind in kinds for name, row in ROWS.items() if name in kind and not fits(kind[name], row)}
+    if not wrong:
+        return scene
+
+    def right(kind: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+        return {name: values for name, values in kind.items() if name not in wrong}
+
+    curves = [replace(one.curves, curve=right(one.curves.curve), point=right(one.curves.point)) for one in scene.sets]
+    sets = [replace(one, curves=of) for one, of in zip(scene.sets, curves, strict=True)]
+    sentence = f"values of another type than that of their attribute are left out: without {', '.join(sorted(wrong))}"
+    return replace(scene, sets=sets, unread=[*scene.unread, sentence])
 
 
 def _unheld(scene: HairScene, kind: Format) -> list[str]:
@@ -166,16 +206,29 @@ def _one_set(scene: HairScene, kind: Format) -> tuple[Curves, list[str]]:
     elif own[1] and kind.widths == "point":
         widths = np.repeat(curves.curve["width"], curves.counts)
         curves = replace(curves, point={**curves.point, "width": widths})
-    for name in (name for name, scope in kind.kept.items() if scope == "point" and name in curves.curve):
-        curves = replace(curves, point={name: np.repeat(curves.curve[name], curves.counts, axis=0), **curves.point})
-    kept = {name for name, scope in kind.kept.items() if scope == "point" or name not in curves.point}
-    names = {*curves.curve, *curves.point} - {"width", *kept}
-    if names:
+    kept = _kept(curves, kind)
+    if names := {*curves.curve, *curves.point} - {*kept.curve, *kept.point, "width"}:
         lost.append(f"{kind.name} holds no such attributes: without {', '.join(sorted(names))}")
+    curves = kept
     lost += _materials(scene, kind)
     if any((one.curves.ids != np.arange(len(one.curves))).any() for one in shown):
         lost.append(f"{kind.name} holds no ids: curves are numbered from 0")
     return curves, lost
+
+
+def _kept(curves: Curves, kind: Format) -> Curves:
+    """The curves with widths, and with those attributes that the format has a place for."""
+    curve, point = ({"width": kind["width"]} if "width" in kind else {} for kind in (curves.curve, curves.point))
+    for name, (scope, row) in kind.kept.items():
+        of_points, of_curves = curves.point.get(name), curves.curve.get(name)
+        values = of_curves if of_points is None else of_points
+        if values is None or not fits(values, row):
+            continue
+        if scope == "point":
+            point[name] = np.repeat(values, curves.counts, axis=0) if of_points is None else values
+        elif of_points is None:
+            curve[name] = values
+    return replace(curves, curve=curve, point=point)
 
 
 def joined(sets: list[CurveSet]) -> Curves:

@@ -26,10 +26,13 @@ HEADER = struct.Struct(
 SEGMENTS, POINTS, THICKNESS, TRANSPARENCY, COLOR = (1 << bit for bit in range(5))
 MOST_SEGMENTS = 2**16 - 1  # of a hair
 PLAIN = (0.0, 0.0, 0.0, 0.0, 0.0)  # thickness, transparency and colour of files without such arrays
+UNSET = {(0.0, 0.0, 0.0), (1.0, 1.0, 1.0)}  # colours of files that have none: ours, and those of the library cyHair
 
 
 def read_hair(path: Path, space: StageSpace) -> Curves:
-    """Reads all hairs, root first, with the point attributes ``width``, a diameter [m], and ``color`` if present.
+    """Reads all hairs, root first, with the point attribute ``width``, a diameter [m].
+
+    Colour and transparency become ``color`` and ``displayOpacity``, of points or, as the header has them, of curves.
 
     Raises UserError for a file that is not readable, truncated or inconsistent.
     """
@@ -37,7 +40,7 @@ def read_hair(path: Path, space: StageSpace) -> Curves:
     record(path)
     if len(data) < HEADER.size or data[:4] != b"HAIR":
         raise UserError(f"{path}: is not a .hair file (it does not begin with HAIR); choose another")
-    _, hairs, points, arrays, segments, thickness, *_ = HEADER.unpack_from(data)
+    _, hairs, points, arrays, segments, thickness, transparency, *color, _ = HEADER.unpack_from(data)
     if not arrays & POINTS:
         raise UserError(f"{path}: holds no points; export it again")
     if len(data) < HEADER.size + 12 * points:  # checked before memory is allocated
@@ -67,39 +70,47 @@ def read_hair(path: Path, space: StageSpace) -> Curves:
         raise UserError(f"{path}: its hairs have {counts.sum()} points, but it holds {points}; export it again")
     places = take(POINTS, "<f4", 3 * points)
     widths = take(THICKNESS, "<f4", points)
-    take(TRANSPARENCY, "<f4", points)
+    clear = take(TRANSPARENCY, "<f4", points)
     colors = take(COLOR, "<f4", 3 * points)
 
     assert places is not None
     widths = np.full(points, thickness, np.float32) if widths is None else widths
     if (bad := np.flatnonzero(~((widths >= 0.0) & (widths <= limits.FARTHEST)))).size:
         raise UserError(f"{path}: point {bad[0]} is {widths[bad[0]]:g} thick; must be from 0 to {limits.FARTHEST:g}")
-    attributes = {"width": widths * space.meters_per_unit}
+    attributes, of_curves = {"width": widths * space.meters_per_unit}, dict[str, NDArray]()
+    if clear is not None:
+        attributes["displayOpacity"] = 1.0 - clear
+    elif transparency:
+        of_curves["displayOpacity"] = np.full(hairs, 1.0 - transparency, np.float32)
     if colors is not None:
         attributes["color"] = colors.reshape(-1, 3)
+    elif tuple(color) not in UNSET:
+        of_curves["color"] = np.tile(np.array(color, np.float32), (hairs, 1))
     if len(places):
         check_points(places.reshape(-1, 3), str(path))
     curves = Curves(
         to_metres(places.reshape(-1, 3).astype(np.float64), space),
         offsets_from_counts(counts),
         np.arange(hairs, dtype=np.int64),
-        point=attributes,
+        of_curves,
+        attributes,
     )
     return curves.check(str(path))
 
 
 def write_hair(curves: Curves, path: Path, space: StageSpace) -> None:
-    """Writes hairs with their diameters, and colours where they have the point attribute ``color``.
+    """Writes hairs with the point attributes ``width``, ``color`` and ``displayOpacity`` that they have.
 
     Raises UserError for a hair of more points than the format can count.
     """
     if (most := int(curves.counts.max())) > MOST_SEGMENTS + 1:
         raise UserError(f"{path}: a hair has {most} points; must have at most {MOST_SEGMENTS + 1}: resample them")
-    widths, color = curves.point.get("width"), curves.point.get("color")
+    widths, color, opacity = (curves.point.get(name) for name in ("width", "color", "displayOpacity"))
     arrays = {
         SEGMENTS: (curves.counts - 1).astype("<u2"),
         POINTS: from_metres(curves.points, space),
         THICKNESS: None if widths is None else widths / space.meters_per_unit,
+        TRANSPARENCY: None if opacity is None else 1.0 - opacity,
         COLOR: color,
     }
     kept = {flag: values for flag, values in arrays.items() if values is not None}

@@ -66,7 +66,7 @@ def open_usd_scene(path: Path) -> Iterator[HairScene]:
         times += [time for time in around if not found or (times and min(times) < time < max(times))]
         frames = sampled_frames(times, str(path)) if times else np.empty(0)
         unread = [f"{prim.GetPath()} is a {prim.GetTypeName()}, which is not read" for prim in _others(source, found)]
-        sets = [*_made_on_demand(source), *(_curve_set(source, prim, unread) for prim in found)]
+        sets = [*_made_on_demand(source), *(one for prim in found for one in _curve_sets(source, prim, unread))]
         record(path, *layer_files(source.stage))  # the caller may write while the stage is open
         bodies = [_body(source, prim, frames) for prim in surfaces]
         unread += _unread_motion(around, frames, bool(found))
@@ -93,7 +93,8 @@ def _unread_motion(times: list[float], frames: NDArray, curves: bool) -> Iterato
         yield f"{span}: only {frames[0]:g} to {frames[-1]:g} are kept, in which the curves move"
 
 
-def _curve_set(source: Source, prim: Usd.Prim, unread: list[str]) -> CurveSet:
+def _curve_sets(source: Source, prim: Usd.Prim, unread: list[str]) -> list[CurveSet]:
+    """The curves of a prim; its hairs and its guides apart, where it has both."""
     names = list[str]()
     curves = curves_at(source, prim, rest_time(source, prim), names)
     moves, name = _posed_at(source, prim), prim.GetName()
@@ -113,7 +114,6 @@ def _curve_set(source: Source, prim: Usd.Prim, unread: list[str]) -> CurveSet:
     if rated := [one.GetName() for one in (rates if len(moves) < 2 else rates[1:]) if one.HasAuthoredValue()]:
         unread.append(f"{name}: its {' and '.join(rated)} are not read; the motion is that of its points")
     guide = UsdGeom.Imageable(prim).ComputePurpose() in (UsdGeom.Tokens.guide, UsdGeom.Tokens.proxy)
-    guide = guide or bool((np.asarray(curves.curve.pop("groom_guide", 0)) > 0).all())
     if (gaps_in := gaps(np.unique(moves))) and str(prim.GetPath()).startswith(GROOM):
         unread.append(f"{name}: has no samples at {', '.join(map(str, gaps_in[:8]))}, which lie between its neighbours")
     name = "guides" if str(prim.GetPath()) == LOCKS else name
@@ -131,7 +131,7 @@ def _curve_set(source: Source, prim: Usd.Prim, unread: list[str]) -> CurveSet:
 
     bsdf = None if material.isEmpty else UsdShade.Shader(source.stage.GetPrimAtPath(material.AppendChild("bsdf")))
     bound = OWN_MATERIAL if bsdf and bsdf.GetIdAttr().Get() == HAIR_BSDF else str(material)
-    return CurveSet(name, curves, guide, motion if moves else None, bound)
+    return CurveSet(name, curves, guide, motion if moves else None, bound).apart()
 
 
 def _posed_at(source: Source, prim: Usd.Prim) -> list[float]:
