@@ -43,6 +43,6 @@ def fold_warnings(locks: Curves) -> Iterator[str]:
         first = found["worst"][0]
         yield (
             f"{found['braids']} of {found['of']} braids or twists fold back on themselves, first lock {first['lock']} "
-            f"at its point {first['point']}: their path bends sharper than they are wide; raise guides.lift, lower "
-            "guides.gravity_bend, or leave their sections out with a mask"
+            f"at its point {first['point']}: their path bends sharper than they are wide; bend locks before they are "
+            "braided, lower the magnitude of what bends them after that, or leave their sections out with a mask"
         )

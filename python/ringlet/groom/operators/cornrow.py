@@ -18,13 +18,11 @@ from ringlet.groom import felt, weave
 from ringlet.groom.operators.operator import UP, Context, arc_lengths, evenly, grid, unit
 from ringlet.groom.operators.woven import JOIN, Braided, Woven
 from ringlet.groom.rows import Row, drawn_rows, middle_rows
-from ringlet.groom.scalp import Scalp
 from ringlet.groom.sections import Division
 from ringlet.groom.shares import LAID, REACH, row_reaches
 
 TAIL_POINTS = 40
 OFF = 0.35  # how much the tail heads away from the scalp where it leaves it, as a part of its direction
-SKIN_MARGIN = 1e-3  # [m] between the tail and bodies
 ROOTS_APART = 1.8  # of a row's strands, in radii of a strand
 
 
@@ -91,8 +89,8 @@ class Cornrow(Woven):
 
         shapes, points = grid(fine).copy(), grid(fine).shape[1]
         for k, (row, of) in enumerate(zip(lain, rows, strict=True)):
-            line, _ = _with_tail(row, row.points, values["length"][k], values["gravity_bend"][k], context.scalp, 0.0)
-            shapes[of] = evenly(line, points)
+            tail = _tail(row, row.points, values["length"][k], values["gravity_bend"][k])
+            shapes[of] = evenly(np.concatenate([row.points, tail[1:]]), points)
         fine = fine.with_points(np.ascontiguousarray(shapes.reshape(-1, 3)))
         core = (CORE,) if self.simulate == "core" else ()
         attributes = _attributes(fine, (STRAND_RADIUS, JOIN, LAID, *core))
@@ -137,9 +135,10 @@ class Cornrow(Woven):
         size = self.width.along(along / braid.length)
         lift = (size * abs(braid.front) + braid.radius) * t * t * (3.0 - 2.0 * t)
         skin = row.points + lift[:, None] * row.normals
-        clearance = braid.across + braid.radius + SKIN_MARGIN
-        line, normals = _with_tail(row, skin, length, gravity_bend, scalp, clearance)
-        line, front = evenly(line, points), _along(line, normals, points)
+        tail = braid.clear(_tail(row, skin, length, gravity_bend), scalp)
+        normals = np.concatenate([row.normals, _transported(row.normals[-1], tail)[1:]])
+        line = np.concatenate([skin, tail[1:]])
+        line, front = braid.eased(evenly(line, points), self), _along(line, normals, points)
         tangent = unit(np.gradient(line, axis=0))
         front = unit(front - np.sum(front * tangent, axis=1, keepdims=True) * tangent)
         across = np.cross(front, tangent)
@@ -163,25 +162,18 @@ def _attributes(curves: Curves, names: Sequence[str]) -> dict[str, NDArray]:
     return {name: values.copy() for name, values in {**none, **curves.curve}.items()}
 
 
-def _with_tail(
-    row: Row, skin: NDArray, length: float, gravity_bend: float, scalp: Scalp, clearance: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Points above a row and of a tail after it [m], and the normals of the scalp, transported along the tail.
-
-    clearance: least distance of the tail from bodies [m]. The tail moves as a whole: strands that were moved out one
-    by one would be pressed into each other.
-    """
+def _tail(row: Row, skin: NDArray, length: float, gravity_bend: float) -> NDArray[np.float64]:
+    """Points of a tail after a row whose centre line is at ``skin`` (k, 3), from the last of these [m]."""
     start = unit(unit(skin[-1] - skin[-3]) + OFF * row.normals[-1])
     u = (np.arange(TAIL_POINTS) + 0.5) / TAIL_POINTS
     edges = length / TAIL_POINTS * unit(start - (gravity_bend * u)[:, None] * UP)
-    tail = skin[-1] + np.cumsum(edges, axis=0)
-    line = np.ascontiguousarray(np.concatenate([skin[-1:], tail]))
-    offsets, first = np.array([0, len(line)], np.int32), np.ascontiguousarray(row.normals[-1:])
-    if clearance > 0.0:
-        line = _core.push_out(line, offsets, scalp.bodies, clearance)
-        tail = line[1:]
-    normals = _core.curve_frames(line, offsets, first)[1:, :, 0]
-    return np.concatenate([skin, tail]), np.concatenate([row.normals, normals])
+    return np.cumsum(np.concatenate([skin[-1:], edges]), axis=0)
+
+
+def _transported(normal: NDArray, line: NDArray) -> NDArray[np.float64]:
+    """A normal of the scalp at the points of a line (points, 3) from there on [m]."""
+    offsets, first = np.array([0, len(line)], np.int32), np.ascontiguousarray(normal[None])
+    return _core.curve_frames(np.ascontiguousarray(line), offsets, first)[:, :, 0]
 
 
 def _along(line: NDArray, values: NDArray, points: int) -> NDArray[np.float64]:

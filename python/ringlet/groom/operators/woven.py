@@ -11,26 +11,31 @@ from numpy.typing import NDArray
 from pydantic import Field
 from scipy.optimize import linear_sum_assignment
 
+from ringlet import _core
 from ringlet.data.curves import Curves
 from ringlet.data.errors import Fix, UserError
 from ringlet.data.groom import CORE, STRAND_RADIUS, TIED
 from ringlet.data.quantities import Quantity, Ramped, Varied
 from ringlet.groom import felt, weave
+from ringlet.groom.bends import eased
 from ringlet.groom.operators.ended import Ended
 from ringlet.groom.operators.operator import Context, arc_lengths, evenly, grid, unit
 from ringlet.groom.operators.sectioned import Strands
+from ringlet.groom.scalp import Scalp
 
 JOIN = "join"  # curve attribute of locks: length along a woven strand after which its hairs come to it [m]
 JOINED = 0.5  # place where they do, as a part of the start
 EASE = 0.5  # turns over which a braid begins and ends
 LEAST_POINTS, GOOD_POINTS = 6, 10  # of a strand, per wave of its path to the front and back
+SKIN_MARGIN = 1e-3  # [m] between braids and bodies
 SEALED = 0.15  # factor on the width of a braid at a sealed tip
 
 
 class Woven(Ended):
     """Weaves the strands of each section about a centre line, the mean of their shapes: ``p = c + a x + b z``, with x
-    across the braid and z away from the head, in a rotation-minimising frame of c. The strands come together over
-    ``start`` and run on side by side over ``tail``."""
+    across the braid and z away from the head, in a rotation-minimising frame of c. The centre line is led out of bodies
+    and eased where it bends too sharply for the width. The strands come together over ``start`` and run on side by side
+    over ``tail``."""
 
     width: Annotated[Ramped, Quantity("m", 5e-4, 0.2)] = Field(
         default=Ramped(value=0.012),
@@ -81,7 +86,7 @@ class Woven(Ended):
             narrows = braid.narrows(np.linspace(0.0, 1.0, felt.KNOTS), self)
             yield Strands(
                 braid.rows,
-                braid.woven(shapes[braid.rows], context.scalp.middle, self),
+                braid.woven(shapes[braid.rows], context.scalp, self),
                 {STRAND_RADIUS: braid.radius, JOIN: JOINED * braid.start * braid.length, **core},
                 {TIED: tied} if tied.any() or TIED in curves.point else {},
                 narrows if (narrows != 1.0).any() else None,
@@ -185,11 +190,28 @@ class Braided:
         end, step = 1.0 - self.tail, 1.0 / (points - 1)
         return (u <= end + 1e-9) & (u >= end - max(self.tie, 1.5 * step)) & (self.tie > 0.0)
 
-    def woven(self, shapes: NDArray, middle: NDArray, settings: Woven) -> NDArray[np.float64]:
+    @property
+    def reach(self) -> float:
+        """Half its width, strands included [m]."""
+        return self.across + self.radius
+
+    def clear(self, line: NDArray, scalp: Scalp) -> NDArray[np.float64]:
+        """A centre line (points, 3) [m] outside of bodies by half the width of the braid, less near the root.
+
+        The braid moves as a whole: strands that were moved out one by one would be pressed into each other.
+        """
+        offsets = np.array([0, len(line)], np.int32)
+        return _core.push_out(np.ascontiguousarray(line), offsets, scalp.bodies, self.reach + SKIN_MARGIN)
+
+    def eased(self, line: NDArray, settings: Woven) -> NDArray[np.float64]:
+        """A centre line (points, 3) of even spacing [m] without bends that are too sharp for the braid."""
+        return eased(line, self.reach * self.narrows(np.linspace(0.0, 1.0, len(line)), settings))
+
+    def woven(self, shapes: NDArray, scalp: Scalp, settings: Woven) -> NDArray[np.float64]:
         """The strands for their shapes (strands, points, 3) [m]."""
         points = shapes.shape[1]
-        line = evenly(shapes.mean(axis=0), points)
-        return self.about(line, *weave.frames(line, middle), shapes[:, 0] - line[0], settings)
+        line = self.eased(evenly(self.clear(evenly(shapes.mean(axis=0), points), scalp), points), settings)
+        return self.about(line, *weave.frames(line, scalp.middle), shapes[:, 0] - line[0], settings)
 
     def about(
         self, line: NDArray, across: NDArray, front: NDArray, offset: NDArray, settings: Woven
