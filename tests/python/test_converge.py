@@ -1,6 +1,8 @@
 """``ringlet converge``: the same frames at several settings, compared with a run that converges."""
 
 import json
+import shutil
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -41,6 +43,15 @@ def test_every_setting_begins_in_the_same_state(example):
     points = ringlet.simulate(shot, groom, frames=(1, 4)).points.astype(np.float64)
     expected = ringlet.lock_motion(points[1:], ringlet.build_groom(groom).locks.offsets)
     assert found.shipped.motion == pytest.approx(expected, rel=1e-3)
+
+
+def test_strands_that_cores_carry_are_compared_as_they_are_written(tmp_path):
+    case = Path(shutil.copytree(Path(__file__).parents[1] / "cases" / "core_braid_stretch", tmp_path / "case"))
+    shot, groom = ringlet.read_shot(case / "s.shot.toml"), ringlet.build_groom(case / "r.recipe.toml")
+    found = ringlet.converge(shot, groom, frames=(2, 4))
+    points = ringlet.simulate(shot, groom, frames=(1, 4)).points.astype(np.float64)
+    assert found.shipped.motion == pytest.approx(ringlet.lock_motion(points[1:], groom.locks.offsets), rel=1e-3)
+    assert found.shipped.tips == pytest.approx(ringlet.tip_distance(points[1:], groom.locks.offsets), abs=1e-6)
 
 
 def test_the_command_writes_a_page_and_says_what_to_set(example):

@@ -8,13 +8,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from ringlet.api.shots import start_motion
 from ringlet.data.binding import root_places
 from ringlet.data.braids import Braids
 from ringlet.data.curves import Curves
 from ringlet.data.groom import SECTION, STRAND_RADIUS
 from ringlet.data.mesh import Clip, Mesh
 from ringlet.report import judge
-from ringlet.sim import Motion, Obstacle, checkpoint, cores
+from ringlet.shot import ShotCloth
+from ringlet.sim import Garment, Motion, Obstacle, checkpoint, cores, simulate
+from ringlet.sim.garment import SimulatedGarment
 from ringlet.sim.inextensible import along_paths
 from ringlet.sim.written import Written
 
@@ -157,3 +160,75 @@ def test_strands_inside_a_body_are_named_with_the_body(groom: ringlet.Groom) -> 
     assert found["depth"] == pytest.approx(3e-3, abs=1e-9)
     far = Obstacle(Mesh("box", corners + 1.0, triangles), Clip(np.array([0.0]), corners[None] + 1.0, 24.0))
     assert "inside" not in judged.statistics(groom.locks.points, [far], 0.0)
+
+
+def test_strands_beyond_a_cloth_are_named_with_it(folder: Path, groom: ringlet.Groom) -> None:
+    """Of a sheet across a braid half-way; not of one beside it, nor of one that ends beside it."""
+    made = cores.Cores.of(groom)
+    judged = Written(made, None, np.zeros(len(made.groom.locks.points), bool))
+    strands = groom.locks.points.reshape(len(groom.locks), -1, 3)[3:6]
+    middle = strands.mean(axis=0)
+    along = middle[31] - middle[29]
+    across = np.cross(along, [1.0, 0.0, 0.0])
+    sides = [side / np.linalg.norm(side) for side in (across, np.cross(along, across))]
+    square = np.array([[x, y] for x in (-1, 1) for y in (-1, 1)]) * 0.02
+    for shift, beyond in ((0.0, True), (0.06, False)):
+        corners = middle[30] + square @ sides + shift * sides[0]
+        mesh = Mesh("scarf", corners, np.array([[0, 1, 3], [0, 3, 2]], np.int32))
+        clip = Clip(np.array([0.0]), corners[None], 24.0)
+        settings = ShotCloth(name="scarf", file=Path("scarf.usda"))
+        scarf = Garment(mesh, clip, settings)
+        worn = SimulatedGarment(scarf, (), 0.0)
+        found = judged.statistics(groom.locks.points, [], 0.0, [worn]).get("inside", [])
+        assert bool(found) == beyond
+        if beyond:
+            assert found[0]["what"] == "scarf" and found[0]["locks"] == groom.locks.ids[3:6].tolist()
+            assert found[0]["depth"] == pytest.approx(np.linalg.norm(middle[-1] - middle[30]), rel=0.2)
+            assert found[0]["points"] == pytest.approx(3 * 29, abs=9)
+            shot = ringlet.read_shot(folder / "s.shot.toml")
+            started = simulate(shot, groom, api.scalp_clip(groom), garments=[scarf], frames=(1, 1))
+            assert [one["what"] for one in started.statistics[0]["inside"]] == ["scarf"]
+
+
+def test_strands_in_those_of_another_braid_are_named_unless_the_groom_has_them_there(groom: ringlet.Groom) -> None:
+    def entangled(curves: Curves, points: np.ndarray) -> list[dict]:
+        made = cores.Cores.of(replace(groom, locks=curves))
+        judged = Written(made, None, np.zeros(len(made.groom.locks.points), bool))
+        return judged.statistics(points, [], 0.0).get("inside", [])
+
+    locks = groom.locks
+    strands = np.array(locks.points, np.float64).reshape(len(locks), -1, 3)
+    radius = float(locks.curve[STRAND_RADIUS][0])
+    assert not entangled(locks, strands.reshape(-1, 3))
+    for away, depth in ((0.3, 0.7), (1.1, 0.0)):  # in radii: a strand of the second braid, beside one of the first
+        moved = strands.copy()
+        beside = np.cross(np.gradient(strands[0], axis=0), [1.0, 0.0, 0.0])
+        moved[3] = strands[0] + away * radius * beside / np.linalg.norm(beside, axis=1, keepdims=True)
+        moved[4:6] += 10.0 + np.arange(2.0)[:, None, None]
+        found = [one for one in entangled(locks, moved.reshape(-1, 3)) if one["what"] == "other braids"]
+        assert bool(found) == (depth > 0.0)
+        if found:
+            assert found[0]["depth"] == pytest.approx(depth * radius, rel=0.05)
+            assert found[0]["locks"] == locks.ids[[0, 3]].tolist()
+            assert not entangled(locks.with_points(moved.reshape(-1, 3)), moved.reshape(-1, 3))
+
+
+def test_strands_miss_as_much_of_their_motion_as_their_cores(folder: Path, groom: ringlet.Groom) -> None:
+    shot = ringlet.read_shot(folder / "s.shot.toml")
+
+    def moved(newton: int) -> np.ndarray:
+        solver = shot.solver.model_copy(update={"newton": newton, "linear_tolerance": 0.02})
+        motion = start_motion(shot.model_copy(update={"solver": solver}), groom)
+        played = [(motion.strands.positions.copy(), motion.points(1))]
+        for k in range(1, 5):
+            motion.reach(k)
+            played.append((motion.strands.positions.copy(), motion.points(1 + k)))
+        offsets = motion.locks.offsets, groom.locks.offsets
+        return np.array(
+            [sum(ringlet.lock_motion(np.array(p), o)) for p, o in zip(zip(*played, strict=True), offsets, strict=True)]
+        )
+
+    converged = moved(60)
+    for newton in (1, 2, 3):
+        core, strand = moved(newton) / converged
+        assert strand == pytest.approx(core, abs=0.01) and (newton > 1 or strand < 0.8)

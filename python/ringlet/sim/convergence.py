@@ -20,6 +20,8 @@ CONVERGED = (60, 0.02)
 
 @dataclass
 class _Played:
+    """A trial: the points of all locks as they are written at each frame [m], and the statistics of its frames."""
+
     points: list[NDArray[np.float64]] = field(default_factory=list)
     statistics: list[dict[str, Any]] = field(default_factory=list)
 
@@ -47,15 +49,15 @@ def converge(
         motion.recall(state)
         solver = shot.solver.model_copy(update={"newton": newton, "linear_tolerance": tolerance})
         motion.shot = shot.model_copy(update={"solver": solver})
-        played = runs.setdefault((newton, tolerance), _Played([motion.strands.positions.copy()]))
+        played = runs.setdefault((newton, tolerance), _Played([motion.points(first).copy()]))
         for frame in range(first, last):
             played.statistics.append(motion.advance(frame, frame + 1))
-            played.points.append(motion.strands.positions.copy())
+            played.points.append(motion.points(frame + 1).copy())
             done += 1
             if progress:
                 progress("converge", done, total)
     motion.shot = shot
-    trials = _compared(runs, motion.locks.offsets)
+    trials = _compared(runs, motion.cores.whole.locks.offsets)
     return Convergence(frames, trials[own], [trials[setting] for setting in chosen[:-1]], trials[CONVERGED], enough)
 
 

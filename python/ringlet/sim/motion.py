@@ -202,7 +202,7 @@ class Motion:
 
     def _judged(self, frame: float) -> dict[str, Any]:
         """Statistics of the locks as they are written at ``frame``, where the motion is."""
-        return self._written.statistics(self.points(frame), self.obstacles, frame)
+        return self._written.statistics(self.points(frame), self.obstacles, frame, self.garments)
 
     def _step(self, frame: float, dt: float, reports: StepReports) -> None:
         """One time step of ``dt`` [s]: roots, bodies and pinned cloth go to their places at ``frame``."""

@@ -1,4 +1,4 @@
-"""Penetration: the depth of points inside closed meshes, and intersections of edges with triangles."""
+"""Penetration: the depth of points inside closed meshes, of curves beyond sheets and of strands in one another."""
 
 from __future__ import annotations
 
@@ -30,6 +30,23 @@ def penetration_depths(
     behind = np.flatnonzero((np.einsum("ni,ni->n", places - foot, axes[:, :, 2]) < 0.0) & (distance > least))
     inside = behind[winding_numbers(places[behind], surface[triangles]) > 0.5]
     depth[near[inside]] = distance[inside]
+    return depth
+
+
+def depths_beyond(
+    points: Array, offsets: Indices, triangles: NDArray[np.int32], corners: NDArray[np.floating], least: float = 0.0
+) -> Array:
+    """The distance from a sheet with those corners [m] of the points of curves that are on its other side than their
+    root is; 0 of all others, and up to ``least``; shape (n,). A curve changes sides where an edge of it intersects."""
+    depth, surface = np.zeros(len(points)), np.asarray(corners, np.float64)
+    last = np.delete(np.arange(len(points)), offsets[:-1])  # points at which edges end
+    ends = np.stack([points[last - 1], points[last]], axis=1)
+    crossed = np.zeros(len(points), np.int64)
+    crossed[last[edge_triangle_intersections(ends, surface[triangles])[:, 0]]] = 1
+    sides = np.cumsum(crossed)
+    beyond = np.flatnonzero((sides - np.repeat(sides[offsets[:-1]], np.diff(offsets))) % 2)
+    distance = _core.bind_roots(surface, triangles, points[beyond])[2] if len(beyond) else np.zeros(0)
+    depth[beyond] = np.where(distance > least, distance, 0.0)
     return depth
 
 

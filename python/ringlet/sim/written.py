@@ -9,12 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet.data.braids import Braids
-from ringlet.data.curves import Curves
+from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.sim.cores import Cores
+from ringlet.sim.entangled import Entangled
+from ringlet.sim.garment import SimulatedGarment
 from ringlet.sim.obstacle import Obstacle
-from ringlet.sim.penetration import penetration_depths
+from ringlet.sim.penetration import depths_beyond, penetration_depths
 
-LEAST_DEPTH = 5e-4  # in a body, at which a strand counts as inside [m]; twice the thickness of skin in contact
+LEAST_DEPTH = 5e-4  # at which a strand counts as inside [m]; twice the thickness of skin in contact
+OTHER_BRAIDS = "other braids"
 
 
 class Written:
@@ -34,19 +37,26 @@ class Written:
         self._edges = np.flatnonzero(ends_free & (lengths > 0.0))
         self._braids = Braids.of(self.locks)
         self._groomed_folds = self._braids.folded(self.locks.points)
+        self._entangled = Entangled(self._braids, of_carried) if self._carried.any() else None
 
-    def statistics(self, points: NDArray[np.floating], obstacles: Sequence[Obstacle], frame: float) -> dict[str, Any]:
+    def statistics(
+        self,
+        points: NDArray[np.floating],
+        obstacles: Sequence[Obstacle],
+        frame: float,
+        garments: Sequence[SimulatedGarment] = (),
+    ) -> dict[str, Any]:
         """Of the locks at positions [m], shape (n, 3), at a frame: ``max_stretch`` and its ``worst_lock``.
 
         Where there are any, also ``folds``, the points at which braids fold that did not in the groom, with their
-        ``folded_locks``; and ``inside``, the bodies in which carried strands are.
+        ``folded_locks``; and ``inside``, what carried strands are in: bodies, cloths where they are, other braids.
         """
         at = np.asarray(points, np.float64)
         ends = at[self._edges + 1] - at[self._edges]
         strain = np.abs(np.sqrt(np.einsum("ni,ni->n", ends, ends)) / self._lengths[self._edges] - 1.0)
         worst = int(strain.argmax())
         folded = self._braids.folded(at) & ~self._groomed_folds
-        inside = self._inside(at, obstacles, frame) if self._carried.any() else []
+        inside = self._inside(at, obstacles, frame, garments)
         return {
             "max_stretch": float(strain[worst]),
             "worst_lock": self._locks_of(self._edges[[worst]])[0],
@@ -58,17 +68,30 @@ class Written:
             **({"inside": inside} if inside else {}),
         }
 
-    def _inside(self, at: NDArray[np.float64], obstacles: Sequence[Obstacle], frame: float) -> list[dict[str, Any]]:
-        """Name, depth [m], number of points and locks of the carried strands in each body, the deepest first."""
-        rows = self.locks.point_rows(self._carried)
-        found = []
-        for obstacle in obstacles:
-            depth = penetration_depths(at[rows], obstacle.mesh.triangles, obstacle.at(frame), LEAST_DEPTH)
-            if (deep := depth > 0.0).any():
-                locks = self._locks_of(rows[deep])
-                found.append(
-                    {"what": obstacle.name, "depth": float(depth.max()), "points": int(deep.sum()), "locks": locks}
-                )
+    def _inside(
+        self,
+        at: NDArray[np.float64],
+        obstacles: Sequence[Obstacle],
+        frame: float,
+        garments: Sequence[SimulatedGarment],
+    ) -> list[dict[str, Any]]:
+        """Name, depth [m], number of points and locks of the carried strands in each thing, the deepest first."""
+        if self._entangled is None:
+            return []
+        rows, offsets = self.locks.point_rows(self._carried), offsets_from_counts(self.locks.counts[self._carried])
+        strands = at[rows]
+        depths = [(OTHER_BRAIDS, self._entangled.depths(at, LEAST_DEPTH)[rows])]
+        for body in obstacles:
+            depth = penetration_depths(strands, body.mesh.triangles, body.at(frame), LEAST_DEPTH)
+            depths.append((body.name, depth))
+        for worn in garments:
+            depth = depths_beyond(strands, offsets, worn.garment.mesh.triangles, worn.cloth.positions, LEAST_DEPTH)
+            depths.append((worn.name, depth))
+        found = [
+            {"what": name, "depth": float(depth.max()), "points": int(deep.sum()), "locks": self._locks_of(rows[deep])}
+            for name, depth in depths
+            if (deep := depth > 0.0).any()
+        ]
         return sorted(found, key=lambda entry: -entry["depth"])
 
     def _locks_of(self, points: NDArray[np.integer]) -> list[int]:
