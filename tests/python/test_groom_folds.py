@@ -43,7 +43,7 @@ mask = {{ where = "z < -6" }}
 per_lock = 2
 """
 BRAID = '[[shape]]\nop = "braid"\nwidth = 1.3\nstart = 0.8\ntail = 1.2\nsimulate = "core"\n'
-WAVES = '[[shape]]\nop = "scraggle"\nmagnitude = 1\nwavelength = 1\n'
+WAVES = '[[shape]]\nop = "scraggle"\nmagnitude = 0.7\nwavelength = 1\n'
 SHOT = 'ringlet = 2\ngroom = "folds.recipe.toml"\nframes = [1, 1]\npreroll = 0\n'
 SAYS = "braids or twists fold back on themselves"
 
@@ -107,7 +107,7 @@ def test_lines_are_eased_where_they_turn_too_sharply_and_nowhere_else() -> None:
         along = edges / np.linalg.norm(edges, axis=1, keepdims=True)
         window = round(reach[0] / np.linalg.norm(edges, axis=1).mean())
         across = np.sum(along[window:] * along[:-window], axis=1)
-        assert np.degrees(np.arccos(np.clip(across, -1.0, 1.0))).max() < 35.0
+        assert np.degrees(np.arccos(np.clip(across, -1.0, 1.0))).max() < 43.5
         assert np.array_equal(made[[0, -1]], np.array(line)[[0, -1]])
     gentle = np.stack([0.05 * np.cos(0.02 * np.arange(200)), 0.05 * np.sin(0.02 * np.arange(200)), np.zeros(200)], 1)
     assert np.array_equal(eased(gentle, np.full(200, 0.02)), gentle)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from judged_shots import EXAMPLE, judged
 from numpy.typing import NDArray
-from ringlet.data.groom import SECTION
+from ringlet.data.groom import SECTION, STRAND_RADIUS
 from ringlet.groom.scalp import Scalp
 from ringlet.groom.shares import LAID
 
@@ -59,7 +59,7 @@ class Held:
 
     crossings:   pairs that passed through one another, counted by ipctk
     changed:     braids with another word
-    radius:      largest distance of a strand from the middle of each braid, over that in the groom
+    radius:      half the width of each braid where it is widest, strands included, over that in the groom
     max_stretch: largest strain of an edge
     """
 
@@ -82,6 +82,7 @@ def played(motion, groom, frames: int) -> Iterator[Held]:
     section, middle = groom.locks.curve[SECTION], Scalp(groom.scalp, groom.region).middle
     sections = [np.flatnonzero(section == one) for one in np.unique(section)]
     parts = [woven(groom.locks, rows) for rows in sections]
+    thick = [float(groom.locks.curve[STRAND_RADIUS][rows[0]]) for rows in sections]
 
     def braids(points: NDArray) -> list[NDArray]:
         strands = points.reshape(len(groom.locks), -1, 3)
@@ -96,7 +97,9 @@ def played(motion, groom, frames: int) -> Iterator[Held]:
         yield Held(
             crossings=frame.crossings or 0,
             changed=sum(not same(weave.braid_word(a), word) for a, word in zip(now, words, strict=True)),
-            radius=np.array([_radius(a) / _radius(b) for a, b in zip(now, groomed, strict=True)]),
+            radius=np.array(
+                [_radius(a, strand) / _radius(b, strand) for a, b, strand in zip(now, groomed, thick, strict=True)]
+            ),
             max_stretch=frame.statistics["max_stretch"],
         )
 
@@ -128,8 +131,8 @@ def same(a: list[tuple[int, int]], b: list[tuple[int, int]]) -> bool:
     )
 
 
-def _radius(places: NDArray) -> float:
-    return float(np.linalg.norm(places, axis=2).max())
+def _radius(places: NDArray, strand: float) -> float:
+    return float(np.linalg.norm(places, axis=2).max()) + strand
 
 
 if __name__ == "__main__":

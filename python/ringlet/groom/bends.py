@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ringlet.groom.operators.operator import evenly
 
-MOST_TURN = 0.6  # [rad] over half a braid's width: strands on the inner side then run back by less than their own width
+MOST_TURN = 0.75  # [rad] over half a braid's width: strands on the inner side then run back by at most their own width
 PASSES = 1000  # of smoothing
 
 
