@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import typer.testing
 from ringlet.cli.app import app
@@ -11,6 +12,7 @@ from typer.main import get_command
 from typer.testing import CliRunner
 
 typer.testing._get_command = cache(get_command)  # made anew for each line, it takes longer than most commands
+COMMAND: Any = typer.testing._get_command(app)
 
 
 def run(*arguments: object):

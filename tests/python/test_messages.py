@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from typing import get_args
+
 import pytest
-from commands import edit, refused, run
+from commands import COMMAND, edit, refused, run
 from pydantic import BaseModel, ValidationError
 from ringlet.data.explain import explain
 from ringlet.shot import parse_shot
@@ -142,3 +144,19 @@ def test_points_of_an_obj_are_counted_as_in_the_file(tmp_path, text, message):
     (tmp_path / "a.obj").write_text(text)
     with pytest.raises(ringlet.UserError, match=message):
         io.read_curves(tmp_path / "a.obj") if "\nl" in text else io.read_mesh(tmp_path / "a.obj")
+
+
+CHOICES = [
+    (name, option.opts[0], choices)
+    for name, command in COMMAND.commands.items()
+    for option in command.params
+    if option.opts[0].startswith("--")
+    and (choices := get_args(option.type_descriptor.annotation))
+    and all(isinstance(one, str) for one in choices)
+]
+
+
+@pytest.mark.parametrize(("command", "option", "choices"), CHOICES, ids=[" ".join(one[:2]) for one in CHOICES])
+def test_a_word_that_is_no_choice_gives_those_there_are(command, option, choices):
+    message = refused(run(command, option, "nonsense"), option, "'nonsense'")
+    assert all(choice in message for choice in choices)

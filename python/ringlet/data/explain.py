@@ -87,6 +87,8 @@ def explain(
         message = f"{name} is {shown(given)}; must be a number of fewer than 300 digits"
     elif kind == "json_invalid":
         message = "is not valid JSON; send it again"
+    elif kind == "value_error":  # a word of the command line that is none of its choices
+        message = f"{name} {str(context['error']).removesuffix('.')}"
     else:
         must = MUST_BE.get(kind, "of another kind").format(**context)
         message = f"{name} is {shown(given)}; must be {must}"

@@ -223,7 +223,10 @@ class _Reader:
         def motion(frame: float) -> NDArray[np.float64]:
             points = self._placed(schema, above, frame)
             if points.shape != controls.shape:
-                raise UserError(f"{where}: has {len(points)} points at frame {frame:g}, {len(controls)} at first")
+                raise UserError(
+                    f"{where}: has {len(points)} points at frame {frame:g}, {len(controls)} at first; export it with "
+                    "one topology"
+                )
             return sampling.vertex(points)
 
         ids = np.arange(len(counts), dtype=np.int64)

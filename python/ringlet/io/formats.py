@@ -128,7 +128,9 @@ def write_scene(scene: HairScene, path: Path | str, space: StageSpace) -> tuple[
         (write_usd_scene if kind is USD else write_alembic)(scene, path, space)
         return scene, [*scene.unread, *_unheld(scene, kind)]
     if not scene.sets:
-        raise UserError(f"{path}: there are no curves to write, and {kind.name} holds nothing else")
+        raise UserError(
+            f"{path}: there are no curves to write, and {kind.name} holds nothing else; choose a .usdc or .abc file"
+        )
     curves, lost = _one_set(scene, kind)
     kind.write(curves, path, space)
     written = CurveSet("hairs", curves, guide=scene.shown[0].guide)

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from pydantic import Field, ValidationInfo, field_validator
 
+from ringlet.data.explain import shown
 from ringlet.data.settings import Section, refuse
 
 
@@ -49,9 +52,11 @@ class Material(Section):
         default=True, description="correct the stiffness of coils with few vertices per turn, which would be too stiff"
     )
 
-    @field_validator("twist_ratio")
+    @field_validator("twist_ratio", mode="before")
     @classmethod
-    def _limited_twist(cls, ratio: float, info: ValidationInfo) -> float:
-        if ratio > 1 and info.data.get("limit_twist"):
-            raise refuse(f"is {ratio}; must be at most 1 (or limit_twist = false, to study what the limit is for)")
+    def _limited_twist(cls, ratio: Any, info: ValidationInfo) -> Any:
+        if isinstance(ratio, int | float) and ratio > 1 and info.data.get("limit_twist"):
+            raise refuse(
+                f"is {shown(ratio)}; must be at most 1 (or limit_twist = false, to study what the limit is for)"
+            )
         return ratio

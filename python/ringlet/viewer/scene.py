@@ -174,5 +174,7 @@ def open_frames(file: Path, display: DisplayGroom) -> Iterator[tuple[np.ndarray,
 def _hairs_at(file: Path, frame: float, display: DisplayGroom) -> np.ndarray:
     points, first = io.read_hairs(file, frame).points, display.groom.locks
     if len(points) != len(first.points):
-        raise UserError(f"{file.name}: has {len(points)} points at frame {frame:g}, {len(first.points)} at its first")
+        raise UserError(
+            f"{file.name}: has {len(points)} points at frame {frame:g}, {len(first.points)} at its first; make it again"
+        )
     return points

@@ -267,7 +267,9 @@ def _counts(prim: Usd.Prim, time: Usd.TimeCode, points: int, where: str) -> NDAr
     if counts.min() < 2:
         raise UserError(f"{where}: curve {counts.argmin()} has {counts.min()} point(s); must have at least 2")
     if counts.sum() != points:
-        raise UserError(f"{where}: curveVertexCounts add up to {counts.sum()}, but there are {points} points")
+        raise UserError(
+            f"{where}: curveVertexCounts add up to {counts.sum()}, but there are {points} points; export it again"
+        )
     return counts
 
 

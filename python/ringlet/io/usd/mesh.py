@@ -235,7 +235,9 @@ def _uv(prim: Usd.Prim, time: Usd.TimeCode, surface: Triangles) -> NDArray | Non
         if primvar.IsIndexed():
             rows = np.array(primvar.GetIndices(at))
             if ((rows < 0) | (rows >= len(values))).any():
-                raise UserError(f"{where}: {primvar.GetName()} has an index outside of 0 to {len(values) - 1}")
+                raise UserError(
+                    f"{where}: {primvar.GetName()} has an index outside of 0 to {len(values) - 1}; export it again"
+                )
             values = values[rows]
         interpolation = primvar.GetInterpolation()
         faceted = interpolation == UsdGeom.Tokens.faceVarying
