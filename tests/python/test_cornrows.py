@@ -154,6 +154,23 @@ def test_a_cornrow_follows_a_drawn_path():
         groom("path = 'swing'", helpers={"swing": Curves.from_list([line, line + 0.001])})
 
 
+def test_names_of_several_helper_curves_are_their_curves_together():
+    t = np.linspace(-1.0, 1.0, 12)
+    lines = [0.09 * np.stack([np.full(12, x), np.cos(t), -np.sin(t)], axis=1) for x in (0.12, -0.5)]
+    helpers = {name: Curves.from_list([line]) for name, line in zip("ab", lines, strict=True)}
+    together = groom("path = 'both'", helpers={"both": Curves.from_list(lines)}).locks
+    assert (together.curve[LAID] > 0.0).sum() == 6
+    assert np.array_equal(groom("path = ['a', 'b']", helpers=helpers).locks.points, together.points)
+    assert np.array_equal(
+        groom("path = ['a']", helpers=helpers).locks.points, groom("path = 'a'", helpers=helpers).locks.points
+    )
+    for wrong, message in (("['a', 'c']", "'c', which is no helper curve"), ("[]", "path"), ("['a', 3]", "path")):
+        with pytest.raises(UserError, match=message):
+            groom(f"path = {wrong}", helpers=helpers)
+    with pytest.raises(UserError, match="as another one does; draw a part line between them"):
+        groom("path = ['a', 'a']", helpers=helpers)
+
+
 @pytest.mark.parametrize("more", ["mask = 0", "blend = 0"])
 def test_a_cornrow_that_acts_nowhere_changes_nothing(more):
     masked = groom(more).locks

@@ -143,6 +143,22 @@ def test_a_zone_may_be_a_region_and_needs_a_place():
         groom("[guides]\nzone = [{ length = 0.5 }]")
 
 
+def test_a_zone_fades_over_its_falloff():
+    text = "[guides]\ncount = 300\nlength = 6\nzone = [{ toward = [0, 0, 1], angle = 60, length = 0.5, %s }]"
+    soft, hard, between = (groom(text % f).guides for f in ("falloff = 60", "falloff = 0", "falloff = 20"))
+    assert np.array_equal(soft.lengths(), groom(text.replace(", %s", "")).guides.lengths())
+    outward = soft.roots / np.linalg.norm(soft.roots, axis=1, keepdims=True)
+    angle = np.degrees(np.arccos(outward[:, 2]))
+    near = np.abs(angle - 60.0) < 1.0  # the middle of the scalp is near that of the ball
+    np.testing.assert_allclose(hard.lengths()[~near], np.where(angle < 60.0, 0.03, 0.06)[~near], rtol=1e-6)
+    np.testing.assert_allclose(between.lengths()[angle < 39.0], 0.03, rtol=1e-6)
+    fades = (angle > 43.0) & (angle < 57.0)
+    assert ((between.lengths()[fades] > 0.03) & (between.lengths()[fades] < 0.06)).all()
+    for wrong in ("toward = [0, 0, 1], angle = 10, falloff = 20", "mask = 0.5, falloff = 20"):
+        with pytest.raises(UserError, match=r"guides.zone\[0\] has a falloff that its cone has no room for"):
+            groom(f"[guides]\nzone = [{{ length = 0.5, {wrong} }}]")
+
+
 def test_guides_turn_away_from_a_drawn_part_line():
     line = "[curves.parting]\npoints = [[3, 0, -9], [3, 0, 9]]\n"
     text = "[guides]\ncount = 200\nlift = 0.2\ngravity_bend = 0\nwhorl = [0, 0, 1]\npart_line = { curve = 'parting' }\n"

@@ -17,6 +17,7 @@ from ringlet.data.errors import UserError
 from ringlet.data.painted import painted, region
 from ringlet.data.quantities import Quantity, Ramped, Section, refuse
 from ringlet.data.random import Random
+from ringlet.groom.helpers import Names
 from ringlet.groom.mask import Mask
 from ringlet.groom.operators.operator import arc_lengths, at_lengths, unit
 from ringlet.groom.scalp import Samples, Scalp
@@ -64,7 +65,7 @@ class Edge(Section):
                 raise refuse(f"has a {name} with '{varied[0]}', but it varies along the line alone; give it a ramp")
         return self
 
-    def of(self, scalp: Scalp, helper: Callable[[str, str], Curves], seed: int) -> EdgeScalp:
+    def of(self, scalp: Scalp, helper: Callable[[Names, str], Curves], seed: int) -> EdgeScalp:
         """The scalp with hair on the lines alone.
 
         helper: curves of a name, for a setting

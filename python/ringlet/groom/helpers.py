@@ -24,6 +24,10 @@ Coordinate = Annotated[float, Field(ge=FAR.least, le=FAR.most)]
 Place = Annotated[tuple[Coordinate, Coordinate, Coordinate], BeforeValidator(_to_metres)]
 
 
+Name = Annotated[str, Field(min_length=1)]
+Names = Name | Annotated[list[Name], Field(min_length=1)]  # of helper curves, whose curves are taken together
+
+
 class HelperCurves(Source):
     """Curves that guide operators: points given here, or curves of a file."""
 

@@ -12,6 +12,7 @@ from pydantic import AfterValidator, Field, FiniteFloat
 
 from ringlet.data.curves import Curves
 from ringlet.data.quantities import Quantity, Section, refuse
+from ringlet.groom.helpers import Names
 
 LENGTHS = (1e-6, 1e6)  # of a vector that gives a direction
 
@@ -33,8 +34,8 @@ Direction = Annotated[Vector, AfterValidator(_points_somewhere)]
 class PartLine(Section):
     """A part line: hair on each side of a plane, or of drawn curves, turns away from it."""
 
-    curve: str | None = Field(
-        default=None, description="name of helper curves along the part line, from `[curves]`; a plane when absent"
+    curve: Names | None = Field(
+        default=None, description="names of helper curves along the part line, from `[curves]`; a plane when absent"
     )
     across: Direction = Field(default=(1.0, 0.0, 0.0), description="direction from one side of the plane to the other")
     offset: Annotated[float, Quantity("m", -1.0, 1.0)] = Field(
@@ -47,7 +48,7 @@ class PartLine(Section):
     )
 
     def away(
-        self, places: NDArray, normals: NDArray, middle: NDArray, helper: Callable[[str, str], Curves]
+        self, places: NDArray, normals: NDArray, middle: NDArray, helper: Callable[[Names, str], Curves]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Unit directions away from it, shape (n, 3), and its falloff with distance from 1 to 0, shape (n,).
 

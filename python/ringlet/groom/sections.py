@@ -18,6 +18,7 @@ from ringlet.data.groom import SECTION
 from ringlet.data.quantities import Quantity, Section, refuse
 from ringlet.data.random import Random
 from ringlet.groom.drawn_part_lines import DrawnPartLines
+from ringlet.groom.helpers import Names
 from ringlet.groom.mask import Mask
 from ringlet.groom.scalp import Scalp
 
@@ -42,9 +43,9 @@ class Sections(Section):
         description="pattern of the sections: squares, squares in bond (brick), rows from front to back, "
         "triangles, rings, or what lies between drawn `part_lines`",
     )
-    part_lines: str | None = Field(
+    part_lines: Names | None = Field(
         default=None,
-        description="of the pattern `drawn`: name of helper curves along the part lines, from `[curves]`; they "
+        description="of the pattern `drawn`: names of helper curves along the part lines, from `[curves]`; they "
         "are projected onto the scalp and extended by a quarter of the size",
     )
     size: Annotated[float, Quantity("m", 2e-3, 1.0)] = Field(
@@ -75,7 +76,7 @@ class Sections(Section):
         return self
 
     def divide(
-        self, scalp: Scalp, seed: int, helper: Callable[[str, str], Curves], density: str | None = None
+        self, scalp: Scalp, seed: int, helper: Callable[[Names, str], Curves], density: str | None = None
     ) -> Division:
         """Divides the region of the scalp, as far as a painted density is over 0.
 

@@ -12,6 +12,7 @@ from scipy.spatial import KDTree
 from ringlet import _core
 from ringlet.data.curves import Curves
 from ringlet.data.quantities import Quantity, Ramped
+from ringlet.groom.helpers import Names
 from ringlet.groom.operators.operator import Context, packed
 from ringlet.groom.operators.shape import Shape
 
@@ -22,7 +23,7 @@ class Attract(Shape):
     the curve to 0 at the distance ``falloff`` from it."""
 
     op: Literal["attract"] = "attract"
-    curve: str = Field(min_length=1, description="name of the helper curves, from `[curves]`")
+    curve: Names = Field(description="names of helper curves, from `[curves]`")
     amount: Annotated[Ramped, Quantity("", 0.0, 1.0, product=False)] = Field(
         default=Ramped(value=0.5, ramp=[(0, 0), (1, 1)]), description="0 keeps the shape, 1 moves it onto the curve"
     )

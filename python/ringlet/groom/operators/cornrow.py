@@ -15,6 +15,7 @@ from ringlet.data.errors import UserError
 from ringlet.data.groom import CORE, SECTION, STRAND_RADIUS, TIED
 from ringlet.data.quantities import Quantity, Varied
 from ringlet.groom import felt, weave
+from ringlet.groom.helpers import Names
 from ringlet.groom.operators.operator import UP, Context, arc_lengths, evenly, grid, unit
 from ringlet.groom.operators.woven import JOIN, Braided, Woven
 from ringlet.groom.rows import Row, drawn_rows, middle_rows
@@ -38,9 +39,9 @@ class Cornrow(Woven):
 
     op: Literal["cornrow"] = "cornrow"
     pattern: Literal["over", "under"] = Field(default="under", description="how strands cross: under stands out more")
-    path: str | None = Field(
+    path: Names | None = Field(
         default=None,
-        description="name of helper curves that braids follow, from `[curves]`, one in a section; the middle of each "
+        description="names of helper curves that braids follow, from `[curves]`, one in a section; the middle of each "
         "section when absent",
     )
     height: Annotated[Varied, Quantity("m", 5e-4, 0.1)] = Field(

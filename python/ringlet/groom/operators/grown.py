@@ -33,6 +33,10 @@ class Zone(Section):
     angle: Annotated[float, Quantity("deg", 1.0, 180.0)] = Field(
         default=40.0, description="half the opening angle of the zone"
     )
+    falloff: Annotated[float | None, Quantity("deg", 0.0, 180.0)] = Field(
+        default=None,
+        description="angle inside the border over which the zone fades; from its middle on when absent, 0 is sharp",
+    )
     mask: Annotated[Mask | None, Quantity("", 0.0, 1.0)] = Field(default=None, description="where the zone is")
     length: Annotated[float, Quantity("", 0.0, 10.0)] = Field(default=1.0, description="factor on the length")
     lift: Annotated[float, Quantity("", 0.0, 10.0)] = Field(default=1.0, description="factor on the lift")
@@ -44,6 +48,8 @@ class Zone(Section):
     def _has_extent(self) -> Zone:
         if self.toward is None and self.mask is None:
             raise refuse("does not say where it is; give it 'toward' or a 'mask'")
+        if self.falloff is not None and (self.toward is None or self.falloff > self.angle):
+            raise refuse("has a falloff that its cone has no room for; give it 'toward', and an 'angle' as large")
         return self
 
     def weight(self, seeds: Curves, context: Context, what: str) -> NDArray[np.float64]:
@@ -55,7 +61,8 @@ class Zone(Section):
         if self.toward is not None:
             outward = unit(seeds.points - context.scalp.middle)
             angle = np.degrees(np.arccos(np.clip(outward @ unit(np.array(self.toward)), -1.0, 1.0)))
-            t = np.clip(1.0 - angle / self.angle, 0.0, 1.0)
+            falloff = self.angle if self.falloff is None else self.falloff
+            t = np.clip((self.angle - angle) / max(falloff, 1e-9), 0.0, 1.0)
             weight *= t * t * (3.0 - 2.0 * t)
         if self.mask is not None:
             weight *= self.mask.weights(seeds, context.scalp.mesh, context.random("zone"), f"{what}.mask")[:, 0]

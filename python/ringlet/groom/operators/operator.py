@@ -18,6 +18,7 @@ from ringlet.data.quantities import Section
 from ringlet.data.random import Random
 from ringlet.data.settings import did_you_mean
 from ringlet.deform.orientation import outward
+from ringlet.groom.helpers import Names
 from ringlet.groom.scalp import Scalp
 from ringlet.groom.sections import Sections
 
@@ -53,8 +54,11 @@ class Context:
         """Random numbers of one setting of this operator."""
         return Random(self.seed, f"{self.purpose}/{setting}")
 
-    def helper(self, name: str, setting: str) -> Curves:
-        """Helper curves that a setting names; raises UserError for an unknown name."""
+    def helper(self, name: Names, setting: str) -> Curves:
+        """Helper curves that a setting names, those of several names together; raises UserError for an unknown name."""
+        if not isinstance(name, str):
+            sets = [self.helper(one, setting) for one in name]
+            return Curves.from_list([curves[k] for curves in sets for k in range(len(curves))])
         if name not in self.curves:
             remedy = did_you_mean(name, self.curves) if self.curves else f"; add a table [curves.{name}]"
             raise UserError(f"{self.purpose}.{setting} is '{name}', which is no helper curve{remedy}")

@@ -16,6 +16,7 @@ from ringlet.data.errors import UserError
 from ringlet.data.groom import SECTION
 from ringlet.data.quantities import Quantity, Ramped, Varied, refuse
 from ringlet.groom.coil import Coil, on_scalp
+from ringlet.groom.helpers import Names
 from ringlet.groom.operators.operator import UP, Context, arc_lengths, at_lengths, grid, unit, with_lock_points
 from ringlet.groom.operators.shape import Shape
 from ringlet.groom.operators.tied import TO_TIE
@@ -40,10 +41,10 @@ class Tie(Shape):
     """
 
     op: Literal["tie"] = "tie"
-    curve: str | None = Field(
+    curve: Names | None = Field(
         default=None,
-        description="name of helper curves that begin at ties, from `[curves]`: the centre lines of tails. Locks go to "
-        "the nearest",
+        description="names of helper curves that begin at ties, from `[curves]`: the centre lines of tails. Locks go "
+        "to the nearest",
     )
     toward: Direction | None = Field(
         default=None,
