@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from itertools import zip_longest
+from itertools import takewhile, zip_longest
 from typing import Annotated, Any
 
 import typer
@@ -21,7 +21,7 @@ def bench(
         typer.Argument(
             metavar="NAME",
             help="What to measure: cloth, collide, direct, groom, growth, head, iterations, liveliness, mixed, page, "
-            "rest, slider, strands, twirl, view, warp …",
+            "rest, slider, strands, twirl, view, warp …; or compare, with a commit and names",
         ),
     ],
     as_json: Json = False,
@@ -30,8 +30,11 @@ def bench(
     """Measures a part of Ringlet. A benchmark's own parameters are given as --PARAMETER VALUE.
 
     Examples: ringlet bench groom · ringlet bench strands --json --threads 1 · ringlet bench twirl --strands 1024 --json
+    · ringlet bench compare v0.1.0 strands "twirl --strands 1024"
     """
-    result = ringlet.run_bench(name, **dict(parameters(context.args)))
+    words = tuple(takewhile(lambda word: not word.startswith("--"), context.args)) if name == "compare" else ()
+    params = dict(parameters(context.args[len(words) :]))
+    result = ringlet.run_bench(name, **params, **({"words": words} if words else {}))
     if as_json:
         print_json(result)
         return
