@@ -15,7 +15,8 @@ def frames(count: int = 12, **contact: Any) -> list[dict[str, Any]]:
 
 
 def test_a_sound_simulation_is_usable_and_has_no_findings() -> None:
-    for statistics in (frames(), frames(motion_kept=0.9), [{"frame": 1.0}, *frames()]):
+    contact = {"motion_kept": 0.5, "motion_missing": 2e-4, "motion_tolerated": 5e-4}  # of a frame that hardly moves
+    for statistics in (frames(), frames(**contact), [{"frame": 1.0}, *frames()]):
         verdict = judge(statistics)
         assert verdict.usable and verdict.lines() == [f"Usable: no frame of {len(statistics)} needs a look."]
 
@@ -51,12 +52,13 @@ def test_a_body_that_could_not_arrive_is_named_with_how_far_it_lags_and_by_which
     )
 
 
-def test_hair_that_keeps_too_little_of_its_motion_is_found_with_contact_alone() -> None:
-    statistics = frames(motion_kept=0.9)
-    statistics[6]["contact"]["motion_kept"] = 0.55
+def test_hair_that_misses_more_motion_than_is_tolerated_is_found_with_contact_alone() -> None:
+    statistics = frames(motion_kept=0.9, motion_missing=4e-4, motion_tolerated=5e-4)
+    statistics[6]["contact"] |= {"motion_kept": 0.55, "motion_missing": 6e-4}
     statistics[7]["unconverged"] = 1  # usual with contact
     (finding,) = judge(statistics).findings
-    assert finding.frames == [7] and "55 %" in finding.what and "solver.newton" in finding.remedy
+    assert finding.frames == [7] and "0.6 mm" in finding.what and "55 %" in finding.what
+    assert "solver.newton" in finding.remedy
     free = frames()
     free[7] |= {"unconverged": 2, "unconverged_locks": [3, 9]}
     (finding,) = judge(free).findings

@@ -62,6 +62,7 @@ BESIDE = {
     "Rest.spring": "[rest]\nmode = 'equilibrium'\n",
     "Rest.iterations": "[rest]\nmode = 'lofted'\n",
     "Rest.tolerance": "[rest]\nmode = 'lofted'\n",
+    "Solver.accuracy": CONTACT,
     "Solver.safeguards": "[solver]\ncontinuation = 'history'\n",
     "Pin.within": CLOTH + "[[cloth.pin]]\nto = 'floor'\n",
 }
@@ -107,7 +108,8 @@ def coils():
 
 @cache
 def outcome(text: str) -> str:
-    """A digest of the motion of a shot, of its rest shape, and of what the core is given to do in a step."""
+    """A digest of the motion of a shot, of its rest shape, and of what the core is given to do in a step,
+    and of the motion that it may miss."""
     shot, made = parse_shot(text), coils()
     parts: list[Any] = []
     if shot.rest.mode != "none":
@@ -121,7 +123,8 @@ def outcome(text: str) -> str:
     step = step_settings(shot.solver, 0.01, shot.forces.gravity, shot.forces.wind)
     given = {name: str(getattr(step, name)) for name in dir(step) if not name.startswith("_") and name != "safeguards"}
     given |= {name: getattr(step.safeguards, name) for name in dir(step.safeguards) if not name.startswith("_")}
-    parts += [found.points, given, *(cloth.points for cloth in found.cloths)]
+    tolerated = [frame["contact"]["motion_tolerated"] for frame in found.statistics if "contact" in frame]
+    parts += [found.points, given, tolerated, *(cloth.points for cloth in found.cloths)]
     return digest(*parts)
 
 

@@ -72,10 +72,10 @@ def summary(statistics: Statistics) -> list[str]:
         sentences.append(
             f"{_times(unconverged)} the scene ran out of Newton iterations before all of it was at rest in its step."
         )
-        if kept := [v for v in series(statistics, "contact.motion_kept") or [] if math.isfinite(v)]:
+        if missing := [v for v in series(statistics, "contact.motion_missing") or [] if math.isfinite(v)]:
             sentences.append(
-                f"Its hair keeps an estimated {100 * min(kept):.0f} % of its motion in the worst frame, "
-                f"{100 * median(kept):.0f} % in the median; more iterations (solver.newton) keep more."
+                f"Its hair misses an estimated {1e3 * max(missing):.2g} mm of its motion in the worst frame, "
+                f"{1e3 * median(missing):.2g} mm in the median; more iterations (solver.newton) keep more."
             )
     elif unconverged:
         sentences.append(

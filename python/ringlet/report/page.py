@@ -226,7 +226,11 @@ def _simulation(report: RunReport) -> str:
                 "",
                 {"contact.violations": "pairs", "contact.zone_vertices": "vertices held back"},
             ),
-            chart("Motion kept, estimated", "%", {"contact.motion_kept": "of the converged motion"}, factor=100.0),
+            chart(
+                "Motion that a frame misses, estimated",
+                "m",
+                {"contact.motion_missing": "mean over the hair", "contact.motion_tolerated": "may be missing"},
+            ),
             chart("Largest step that was left", "m", {"residual": "of a vertex"}),
             chart("Conjugate gradients", "", {"contact.linear_iterations": "iterations"}),
             chart("Where a frame's time goes", "s", {f"contact.{p}_ms": p for p in PHASES}, factor=1e-3),

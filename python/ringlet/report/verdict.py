@@ -7,13 +7,11 @@ from collections.abc import Callable, Iterable
 from dataclasses import asdict, dataclass
 from itertools import pairwise
 from numbers import Real
-from statistics import median
 from typing import Any
 
 from ringlet.report.findings import Statistics, percent, value
 
 MOST_STRAIN = 0.05  # of an edge; hair that is longer looks like rubber
-LEAST_MOTION = 0.8  # of the converged motion; hair that keeps less swings as if through water
 SHOWN = 3  # locks and ranges of frames in a sentence
 
 
@@ -158,17 +156,21 @@ def _stalled(statistics: Statistics) -> Finding | None:
 
 
 def _slow(statistics: Statistics) -> Finding | None:
-    kept = [(_number(frame, "contact.motion_kept", 1.0), frame) for frame in statistics]
-    frames = [frame for part, frame in kept if part < LEAST_MOTION]
-    if not frames:
+    """Frames that miss more of their motion than the shot tolerates."""
+    missing = [
+        (_number(frame, "contact.motion_missing"), frame)
+        for frame in statistics
+        if _number(frame, "contact.motion_missing") > _number(frame, "contact.motion_tolerated", math.inf)
+    ]
+    if not missing:
         return None
-    parts = [part for part, _ in kept]
+    worst, at = max(missing, key=lambda found: found[0])
     what = (
-        f"Hair keeps an estimated {100 * min(parts):.0f} % of its motion at worst, {100 * median(parts):.0f} % in the "
-        "median frame"
+        f"Hair misses an estimated {1e3 * worst:.2g} mm of its motion in frame {at['frame']:g}, and keeps "
+        f"{100 * _number(at, 'contact.motion_kept'):.0f} %"
     )
     remedy = "try solver.newton = 8 and solver.linear_tolerance = 0.1; ringlet converge says what is enough"
-    return Finding(what, remedy, _numbers(frames), [])
+    return Finding(what, remedy, _numbers([frame for _, frame in missing]), [])
 
 
 def _unsolved(statistics: Statistics) -> Finding | None:

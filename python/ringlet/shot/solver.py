@@ -39,6 +39,13 @@ class Solver(Section):
     tolerance: float = Field(
         default=1e-6, gt=0, le=1e-2, description="[m] a lock has converged when no vertex moves further than this"
     )
+    accuracy: float = Field(
+        default=5e-4,
+        gt=0,
+        le=1,
+        description="[m] motion that a frame in contact may miss, by estimate, before the report asks for a look; 5 % "
+        "of its motion where that is more",
+    )
     system: Literal["automatic", "banded", "conjugate_gradient", "direct"] = Field(
         default="automatic",
         description="how the linear system of locks in contact is solved: each alone (an error where they are "

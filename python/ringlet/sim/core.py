@@ -13,7 +13,7 @@ Vector = tuple[float, float, float]
 Core = TypeVar("Core")
 
 ENUMERATIONS = {"continuation": _core.Continuation, "integrator": _core.Integrator, "system": _core.System}
-OF_RUN = ("substeps", "until_converged")  # settings of a solver that the core does not have
+OF_RUN = ("accuracy", "substeps", "until_converged")  # settings of a solver that the core does not have
 
 
 def assign(target: Core, settings: Section, *, without: Collection[str] = ()) -> Core:

@@ -196,6 +196,8 @@ class Motion:
                 [garment.name for garment in self.garments],
                 self.scene.penetrating if self.scene else 0,
                 self._lagging,
+                len(self.strands.positions) + sum(len(garment.cloth.positions) for garment in self.garments),
+                self.shot.solver.accuracy,
             ),
             **self._judged(end),
         }

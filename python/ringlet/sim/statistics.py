@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+TOLERATED = 0.05  # of a frame's motion may be missing
 
 
 @dataclass
@@ -29,6 +32,8 @@ def frame_statistics(
     cloths: list[str],
     penetrating: int,
     lagging: list[dict[str, Any]],
+    vertices: int,
+    accuracy: float,
 ) -> dict[str, Any]:
     """Statistics of a frame, by name: of strands, of contact and of each cloth, where there are any.
 
@@ -36,10 +41,12 @@ def frame_statistics(
     cloths:  their names
     penetrating: the number of vertices with initial penetration that are still inside a body
     lagging: what did not arrive in the frame (see ``lag.py``)
+    vertices: the number of vertices of the scene that move
+    accuracy: motion that a frame may miss [m]
     """
     return {
         **_of_strands(reports.strands, locks),
-        **(_of_contact(reports.scene, penetrating, lagging) if reports.scene else {}),
+        **(_of_contact(reports.scene, penetrating, lagging, vertices, accuracy) if reports.scene else {}),
         **({"cloth": _of_cloths(reports.cloths, cloths)} if cloths else {}),
     }
 
@@ -87,17 +94,36 @@ def _of_cloths(reports: list[list[dict[str, float]]], names: list[str]) -> dict[
     }
 
 
-def _kept(moved: float, left: float) -> float | None:
-    """The part of a frame's motion that its iterations have made, estimated from what is left of the last direction.
+def _motion(reports: list[dict[str, float]], vertices: int, accuracy: float) -> dict[str, float | None]:
+    """What a frame's iterations have made of its motion, estimated from what is left of the last direction.
 
     It is that of what is solved; strands that cores carry keep the same part of theirs, within 0.01 in
-    tests/python/test_written.py. None where nothing has moved or is missing.
+    tests/python/test_written.py. Distances are root mean squares over the vertices [m].
+
+    motion_kept:      the part that was made; None where nothing has moved or is missing
+    motion_missing:   what is missing
+    motion_tolerated: what may be missing: the accuracy, or a part of a long motion
     """
-    wanted = moved + max(left, 0.0)
-    return moved / wanted if wanted > 0.0 else None
+    moved, left = (sum(report[name] for report in reports) for name in ("moved", "left"))
+    missing, steps = max(left, 0.0), len(reports)
+    kept = moved / (moved + missing) if moved + missing > 0.0 else None
+    motion = math.sqrt(steps * moved / vertices)
+    # What is missing is a part of the motion, but for what has not moved at all.
+    lacking = motion * missing / moved if moved > 0.0 else math.sqrt(steps * missing / vertices)
+    return {
+        "motion_kept": kept,
+        "motion_missing": lacking,
+        "motion_tolerated": max(accuracy, TOLERATED * (motion + lacking)),
+    }
 
 
-def _of_contact(reports: list[dict[str, float]], penetrating: int, lagging: list[dict[str, Any]]) -> dict[str, Any]:
+def _of_contact(
+    reports: list[dict[str, float]],
+    penetrating: int,
+    lagging: list[dict[str, Any]],
+    vertices: int,
+    accuracy: float,
+) -> dict[str, Any]:
     """Over all substeps of a scene. It is solved as one, so its iterations replace those of the strands."""
 
     def total(name: str) -> float:
@@ -121,7 +147,7 @@ def _of_contact(reports: list[dict[str, float]], penetrating: int, lagging: list
             "zone_vertices": int(total("zone_vertices")),
             "excused": penetrating,
             "linear_iterations": int(total("linear_iterations")),
-            "motion_kept": _kept(total("moved"), total("left")),
+            **_motion(reports, vertices, accuracy),
             "lag": reports[-1]["lag"],
             **({"lagging": lagging} if lagging else {}),
             **{f"{name}_ms".removeprefix("time_"): 1e3 * total(name) for name in times},
