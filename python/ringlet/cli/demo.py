@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import sys
 import time
 from pathlib import Path
 from typing import Annotated
@@ -27,7 +29,7 @@ def demo(
     """
     start = time.perf_counter()
     with shown_progress() as progress:
-        run = ringlet.run_demo(output, progress=progress)
+        run = ringlet.run_demo(output, progress=progress, show=None if as_json else show)
     seconds = time.perf_counter() - start
     made = {stage.file: stage for stage in run.stages if stage.file}
     if as_json:
@@ -38,3 +40,10 @@ def demo(
         rows.append([str(output / name), size((output / name).stat().st_size), "", what])
     print_table(["file", "size", "took", ""], rows, right=(1, 2))
     print(f"\nDone in {seconds:.0f} s. Look at {output / 'still.png'}, read {output / 'report.html'}.")
+
+
+def show(picture: Path) -> None:
+    """Opens a picture where there is a display; names it."""
+    typer.echo(f"{picture} is there", err=True)
+    if sys.platform in ("darwin", "win32") or {"DISPLAY", "WAYLAND_DISPLAY"} & os.environ.keys():
+        typer.launch(str(picture))
