@@ -28,7 +28,8 @@ def texts() -> dict[str, list[str]]:
 
 
 def texts_with(part: str) -> list[str]:
-    return [text for text in texts() if part in text]
+    """The text that is the part, or those that have it."""
+    return [part] if part in texts() else [text for text in texts() if part in text]
 
 
 def pattern(part: str) -> str:

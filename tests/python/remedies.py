@@ -32,7 +32,7 @@ from settings_walk import add
 from shapes import ball
 
 import ringlet
-from ringlet import Curves, Mesh
+from ringlet import Curves, Mesh, io
 from ringlet.groom import make_groom, parse_recipe
 
 RECIPE, SHOT = "small.recipe.toml", "small.shot.toml"
@@ -566,7 +566,8 @@ GONE = shirt(lambda prim: prim.GetReferences().AddReference("./gone.usda"))
 ASTRAY = shirt(lambda prim: prim.GetReferences().AddInternalReference("/gone"))
 HEADS = [
     of_head("{}: has no points; export it again or choose another", points(lambda old: old[:0])),
-    of_head("{}: point {} is {}; must be finite, and at most {} from 0", points(lambda old: np.full_like(old, np.inf))),
+    of_head("{}: point {} is {}; must be finite, and at most {} from 0", points(lambda old: np.full_like(old,
+        np.inf))),
     of_head("{}: has no faces; export it again or choose another mesh", counts(lambda old: [])),
     of_head("its faces have {} corners, but there are {} indices; export it again", counts(lambda old: old[1:])),
     of_head("{}: a face uses point {}; must be from 0 to {}", lambda stage,
@@ -631,6 +632,14 @@ def curves(change: Callable[[Usd.Prim], object]) -> Act:
 
 def set_to(**values: Any) -> Callable[[Usd.Prim], object]:
     return lambda prim: [prim.GetAttribute(name).Set(value) for name, value in values.items()]
+
+
+def with_widths(values: list[float], interpolation: str = "vertex") -> Callable[[Usd.Prim], object]:
+    def change(prim: Usd.Prim) -> None:
+        UsdGeom.BasisCurves(prim).CreateWidthsAttr(values)
+        UsdGeom.BasisCurves(prim).SetWidthsInterpolation(interpolation)
+
+    return change
 
 
 def with_primvar(name: str, values: list[float]) -> Callable[[Usd.Prim], object]:
@@ -759,4 +768,92 @@ REVIEW = [
     Advice("message: its length is not the one it states; send it again",
         lambda: unpack(packed('{"kind": "save"}')[:-1]), lambda: unpack(packed('{"kind": "save"}'))),
 ]  # fmt: skip
-ROWS = [*FILES, *FORMATS, *RECIPES, *SHOTS, *PICTURES, *HEADS, *CURVES, *SCALPS, *REVIEW]
+MORE = [
+    Advice("is {}; must be at least {}{}", recipe("[guides]\nlength = -1"), recipe("[guides]\nlength = '0.1 mm'")),
+    Advice("is {}; must be at most {}{}", recipe("[guides]\nlength = 1e9"), recipe("[guides]\nlength = '10 m'")),
+    Advice("has both 'count' and 'spacing'; give one of them", recipe("[guides]\nspacing = 4"),
+        recipe("[guides]\ncount = 'none'\nspacing = 4")),
+    Advice("has 'toward', but locks cross a mesh from any side; take it out, or the mesh",
+        recipe(recipes.ROUND + "[[shape]]\nop = 'cut'\nmesh = 'round'\ntoward = [0, 1, 0]"),
+        recipe(recipes.ROUND + "[[shape]]\nop = 'cut'\nmesh = 'round'")),
+    Advice("has '{}', but no file that it is for; take it out{}", recipe(recipes.TAIL + "unit = 'm'"),
+        recipe(recipes.TAIL)),
+    Advice("but it varies along the line alone; give it a ramp",
+        recipe("[scalp.edge]\nregion = 'front'\nwidth = { value = 1, map = 'paint' }"),
+        recipe("[scalp.edge]\nregion = 'front'\nwidth = { value = 1, ramp = [[0, 1], [1, 0.5]] }")),
+    Advice("has a text with a character of code 0; take it out", in_order(changed(RECIPE, ('"small"',
+        '"sm\\u0000all"')), groom), in_order(changed(RECIPE, ("\\u0000", "")), groom)),
+    Advice("lists too deep, or a number too long; shorten them", in_order(wrote("b.toml",
+        "ringlet = 2\na = " + "[" * 100_000), line("groom b.toml -o out.usdc")), groom),
+    Advice("a key of over {} parts; shorten it", in_order(wrote("b.toml", f"ringlet = 2\n{'.'.join('a' * 60)} = 1"),
+        line("groom b.toml -o out.usdc")), groom),
+    Advice("{}: cannot be written ({}); choose another place", line(f"groom {RECIPE} -o head.usda/out.usdc"), groom),
+    Advice("{} is '{}', outside of {}; name a file in that folder, or below it", in_order(changed(RECIPE,
+        ("ringlet = 2", 'ringlet = 2\nedits = "../e.toml"')), line(f"edit {RECIPE} --freeze 19000000")),
+        in_order(changed(RECIPE, ("../e.toml", "e.toml")), line(f"edit {RECIPE} --freeze 19000000"))),
+    Advice("{}: {} is {}; must be the name of a file", in_order(wrote("b.toml", "ringlet = 2\nextends = 3\n"),
+        line("groom b.toml -o out.usdc")), in_order(changed("b.toml", ("3", f'"{RECIPE}"')),
+        line("groom b.toml -o out.usdc"))),
+    Advice("is no operator of what it extends{}", in_order(changed(RECIPE, ("[curl]",
+        '[[shape]]\nop = "frizz"\n[curl]')), wrote("b.toml",
+        f'ringlet = 2\nextends = "{RECIPE}"\n[shape.friz]\nmagnitude = 0.1\n'), line("groom b.toml -o out.usdc")),
+        in_order(changed("b.toml", ("friz", "frizz")), line("groom b.toml -o out.usdc"))),
+    Advice("shape.{} is {}; must be tables [[shape.{}]]", in_order(wrote("b.toml",
+        f'ringlet = 2\nextends = "{RECIPE}"\nshape.append = 3\n'), line("groom b.toml -o out.usdc")),
+        in_order(changed("b.toml", ("shape.append = 3", '[[shape.append]]\nop = "frizz"')),
+        line("groom b.toml -o out.usdc"))),
+    Advice("shape.{} is {}; must be a table of settings, or false", in_order(changed(RECIPE, ("[curl]",
+        '[[shape]]\nop = "frizz"\n[curl]')), wrote("b.toml", f'ringlet = 2\nextends = "{RECIPE}"\nshape.frizz = 3\n'),
+        line("groom b.toml -o out.usdc")), in_order(changed("b.toml", ("= 3", "= false")),
+        line("groom b.toml -o out.usdc"))),
+    Advice("{}: {} is {}; must be tables [{}.NAME]", in_order(wrote("b.toml", "ringlet = 2\ngrooms = 3\n"),
+        line("groom b.toml -o out.usdc")), in_order(changed("b.toml", ("grooms = 3",
+        f'[grooms.a]\nextends = "{RECIPE}"')), line("groom b.toml -o out.usdc"))),
+    Advice("{}: {}.{} is {}; must be a table", in_order(wrote("b.toml", "ringlet = 2\n[grooms]\na = 3\n"),
+        line("groom b.toml -o out.usdc")), in_order(changed("b.toml", ("[grooms]\na = 3",
+        f'[grooms.a]\nextends = "{RECIPE}"')), line("groom b.toml -o out.usdc"))),
+    Advice("has no frames {}; {}: ask for those", line(f"{HAIR} --frames 3:9"), line(f"{HAIR} --frames 3:4")),
+    Advice("scalp.file is missing; name the file of the head", in_order(wrote("b.toml",
+        "ringlet = 2\n[guides]\ncount = 3\nlength = 5\n"), line("groom b.toml -o out.usdc")), in_order(added("b.toml",
+        '[scalp]\nfile = "head.usda"\n'), line("groom b.toml -o out.usdc"))),
+    Advice("is a list in the shot; say which of it", in_order(added(SHOT,
+        "\n[contact]\n[[collider]]\nmesh = '/ball/skin'\n"), line(f"{PLAN} --set collider.friction=0.1")),
+        line(f"{PLAN} --set collider[0].friction=0.1")),
+    Advice("in the shot; they count from 0", in_order(added(SHOT, "\n[contact]\n[[collider]]\nmesh = '/ball/skin'\n"),
+        line(f"{PLAN} --set collider[1].friction=0.1")), line(f"{PLAN} --set collider[0].friction=0.1")),
+    Advice("must end in .json, such as wedge.template.json",
+        line(f"wedge {SHOT} --openjd plan.txt --set solver.newton=1"), line(f"{PLAN} --set solver.newton=1")),
+    Advice("was made from other locks ({}, the groom has {}); {}", in_order(added(SHOT,
+        '\n[rest]\nmode = "lofted"\n'), line(f"loft {SHOT} --groom groom.usdc"), changed(RECIPE, ("count = 8",
+        "count = 9")), line(f"sim {SHOT} -o out.usdc")), in_order(line(f"loft {SHOT}"),
+        line(f"sim {SHOT} -o out.usdc"))),
+    Advice("is there, but nothing touches; add a table [contact]{}",
+        shot("[[cloth]]\nname = 'sheet'\nmesh = '/sheet'\n"), shot(shots.CLOTH)),
+    Advice("loft: held is {}, but a lock has {} points; hold fewer", moved("held = 60\n[rest]\nmode = 'lofted'\n"),
+        moved("held = 2\n[rest]\nmode = 'lofted'\n")),
+    Advice("{} has {} values; must have {}, being {}", curves(with_primvar("a", [1.0, 2.0])), curves(with_primvar("a",
+        [1.0] * 8))),
+    Advice("its hairs have {} points, but it holds {}; export it again", converted("a.hair", hair(arrays=3)),
+        converted("a.hair", hair())),
+    Advice("too few for {} × {} numbers at byte {}; export it again", in_order(line("convert groom.usdc a.tfx"),
+        lambda: converted("a.tfx", Path("a.tfx").read_bytes()[:-900])()), in_order(line("convert groom.usdc a.tfx"),
+        line("convert a.tfx out.usdc --from-unit m"))),
+    Advice("{}: cannot be read as USD ({}); write it again or choose another", in_order(wrote("t.usda", "hello"),
+        line("hair t.usda -o out.usdc")), line("hair groom.usdc -o out.usdc")),
+    Advice("{}: has no hairs; make them with: ringlet hair GROOM -o hair.usdc", lambda: io.read_hairs("groom.usdc"),
+        in_order(line("hair groom.usdc -o hair.usdc"), lambda: io.read_hairs("hair.usdc"))),
+    Advice("cannot be read as a picture ({}); give an .exr or .hdr file", in_order(wrote("l.exr", "no"),
+        line("render hair.usdc -o a.png --light l.exr --width 16 --samples 1")),
+        line("render hair.usdc -o a.png --light studio --width 16 --samples 1")),
+    Advice("preset: its picture is no JPEG; keep it without one", asked(protocol.Keep(name="four", tables=["curl"],
+        picture="data:image/jpeg;base64,AAAA")), asked(protocol.Keep(name="four", tables=["curl"]))),
+    Advice("{}: ends in '{}'; must end in .toml", line("adopt hair.usdc -o a.usdc"),
+        line("adopt hair.usdc -o a.recipe.toml")),
+    Advice("{}: ends in '{}'; must end in {}", line("convert groom.usdc out.txt"),
+        line("convert groom.usdc out.hair")),
+    Advice("{} '{}' is 0 all over {}; paint where hair is to grow", on(bent(maps={"m": np.zeros((len(ROUND.triangles),
+        3))}), "density = 'm'\n"), on(bent(maps={"m": np.ones((len(ROUND.triangles), 3))}), "density = 'm'\n")),
+    Advice("has {} values; must have 1, being constant", curves(with_widths([1.0, 2.0], "constant")),
+        curves(with_widths([1.0], "constant"))),
+]  # fmt: skip
+ROWS = [*FILES, *FORMATS, *RECIPES, *SHOTS, *PICTURES, *HEADS, *CURVES, *SCALPS, *REVIEW, *MORE]
