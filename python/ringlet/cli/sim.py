@@ -63,8 +63,8 @@ def sim(
     """Simulates the groom of a SHOT while the scalp moves.
 
     The cache is a layer over the groom. Where the shot names a recipe, or finished hair of another program, the groom
-    is made first and written next to the cache: cache.groom.usdc under cache.usdc. What is done is kept in CACHE.part
-    while it runs; after a run that was killed, or met a full disk, --resume goes on from there.
+    is made first, and written next to the cache with it: cache.groom.usdc under cache.usdc. What is done is kept in
+    CACHE.part while it runs; after a run that was killed, or met a full disk, --resume goes on from there.
 
     Examples: ringlet sim nod.shot.toml -o cache.usdc --frames 1:24 · ringlet sim nod.shot.toml --groom groom.usdc
     """
