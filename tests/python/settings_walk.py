@@ -29,17 +29,18 @@ def kinds(annotation: Any) -> list[Any]:
 
 def add(data: dict[str, Any], text: str) -> None:
     """Adds the tables of a text to those of a recipe; 'none' takes a setting out."""
-
-    def merge(into: dict[str, Any], given: dict[str, Any]) -> None:
-        for key, value in given.items():
-            if isinstance(value, dict) and isinstance(into.get(key), dict):
-                merge(into[key], value)
-            elif value == "none":
-                into.pop(key, None)
-            else:
-                into[key] = value
-
     merge(data, tomllib.loads(text))
+
+
+def merge(into: dict[str, Any], given: dict[str, Any]) -> None:
+    """Adds tables to those of a recipe; 'none' takes a setting out."""
+    for key, value in given.items():
+        if isinstance(value, dict) and isinstance(into.get(key), dict):
+            merge(into[key], value)
+        elif value == "none":
+            into.pop(key, None)
+        else:
+            into[key] = value
 
 
 def at(data: dict[str, Any], place: str) -> Any:

@@ -23,6 +23,23 @@ def test_tries_hold_or_are_refused(area):
     assert "held" in outcomes
 
 
+@pytest.mark.parametrize("number", [36, 54, 78, 1029, 1055])
+def test_a_setting_without_effect_in_a_recipe_acts_in_an_ample_one(number):
+    assert attempt("used", number) == "held"
+
+
+def test_a_setting_that_is_ignored_is_found(monkeypatch):
+    import areas.used
+
+    def without(table, *more):
+        curl = {key: value for key, value in table.get("curl", {}).items() if key != "skips"}
+        return grown({**table, "curl": curl} if curl else table, *more)
+
+    grown = areas.used.grown
+    monkeypatch.setattr(areas.used, "grown", without)
+    assert attempt("used", 87).startswith("UNUSED Curl.skips")
+
+
 def test_a_try_is_made_again_by_its_number():
     assert attempt("resumes", 61) == attempt("resumes", 61) == "held"
 
