@@ -14,7 +14,7 @@ sources := pyproject.toml CMakeLists.txt $(wildcard cmake/* python/ringlet/*/__i
 # What the review page is made from.
 page := tools/web.sh $(wildcard web/*.json web/*.ts web/*.html) $(shell find web/src web/public -type f)
 
-.PHONY: help build demo view test blender extension arm bench docs gallery lint clean
+.PHONY: help build demo view test blender extension arm bench figures docs gallery lint clean
 
 help: ## list the targets
 	@grep -E '^[a-z]+:.*##' Makefile | sed -E 's/:.*## /\t/' | expand -t 10
@@ -70,6 +70,9 @@ arm: .venv/tooled ## cross-built for Linux ARM64 and run by qemu-user: C++ tests
 
 bench: build ## speed, as JSON
 	@for name in groom strands; do .venv/bin/ringlet bench $$name --json; done
+
+figures: .venv/tooled ## measures again what is kept in bench/results and of older sources, by turns with these
+	@$(python) bench/record.py
 
 docs: .venv/tooled ## the documents: docs/_build/html/index.html
 	@tools/docs.sh

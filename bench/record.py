@@ -1,6 +1,9 @@
-"""Runs a benchmark and stores its result in bench/results, the source of the page of benchmarks.
+"""Runs benchmarks and stores their results in bench/results, the source of all figures of the documents.
 
-.venv/bin/python bench/record.py twirl --strands 256 --threads 1
+    .venv/bin/python bench/record.py twirl --strands 256 --threads 1
+
+Without arguments it measures all that are kept and whose sources have changed since. ``--from COMMIT`` before a name
+measures by turns with that commit, instead of the one measured last.
 """
 
 from __future__ import annotations
@@ -12,27 +15,70 @@ import subprocess
 import sys
 from datetime import date
 from pathlib import Path
+from typing import Any
+
+from compare import git, run
 
 RESULTS = Path(__file__).with_name("results")
+ROOT = RESULTS.parents[1]
+CORE = ("src",)
+GROOM = (*CORE, *(f"python/ringlet/{name}" for name in ("data", "deform", "groom", "io")))
+MEASURED = {"groom": GROOM, "slider": GROOM, "warp": GROOM, "collide": GROOM}  # folders, where not the core alone
 
 
-def record(arguments: list[str]) -> Path:
-    """Runs ``ringlet bench`` with arguments; returns the file with the result, the machine and the date."""
+def record(arguments: list[str], reference: str | None = None) -> Path:
+    """Runs ``ringlet bench`` with arguments; returns the file with the result, the commit, the machine and the date.
+
+    reference: commit that it is measured by turns with; by default that of the result that is kept
+    """
+    path = RESULTS / ("_".join(argument.removeprefix("--") for argument in arguments) + ".json")
+    kept = json.loads(path.read_text()) if path.exists() else {}
+    commit, sources = version(arguments[0])
     ringlet = Path(sys.executable).with_name("ringlet")
     command = [str(ringlet if ringlet.exists() else shutil.which("ringlet")), "bench", *arguments, "--json"]
     load = os.getloadavg()[0]
     process = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True)
-    path = RESULTS / ("_".join(argument.removeprefix("--") for argument in arguments) + ".json")
     RESULTS.mkdir(exist_ok=True)
-    entry = {
+    entry: dict[str, Any] = {
         "command": " ".join(["ringlet", "bench", *arguments]),
+        "commit": commit,
+        "sources": sources,
         "date": date.today().isoformat(),
         "processor": processor(),
         "load": round(load, 1),
         "result": json.loads(process.stdout),
     }
+    if reference := reference or kept.get("commit"):
+        turns = run((reference, " ".join(arguments)))[" ".join(arguments)]
+        entry["beside"] = {"commit": reference, **{name: turns[name] for name in ("ratio", "least", "most")}}
     path.write_text(json.dumps(entry, indent=1) + "\n")
     return path
+
+
+def version(name: str) -> tuple[str, dict[str, str]]:
+    """The commit, and what git calls the folders that a benchmark measures; ends where these are changed.
+
+    So a page knows whether a figure is of the sources of today.
+    """
+    folders = MEASURED.get(name, CORE)
+    if changed := git("status", "--porcelain", "--", *folders, cwd=ROOT).stdout:
+        sys.exit(f"record: sources are not committed, so no commit says what is measured; commit them:\n{changed}")
+    return git("rev-parse", "--short", "HEAD", cwd=ROOT).stdout.strip(), {folder: tree(folder) for folder in folders}
+
+
+def tree(folder: str) -> str:
+    """What git calls the content of a folder."""
+    return git("rev-parse", f"HEAD:{folder}", cwd=ROOT).stdout.strip()
+
+
+def stale() -> list[list[str]]:
+    """The arguments of all results that are kept and not of the sources of today."""
+    runs = [json.loads(path.read_text()) for path in sorted(RESULTS.glob("*.json"))]
+    return [
+        run["command"].split()[2:]
+        for run in runs
+        if any(run.get("sources", {}).get(folder) != tree(folder) for folder in run.get("sources", CORE))
+    ]
 
 
 def processor() -> str:
@@ -43,4 +89,8 @@ def processor() -> str:
 
 
 if __name__ == "__main__":
-    print(record(sys.argv[1:]))
+    words = sys.argv[1:]
+    reference = words[1] if words[:1] == ["--from"] else None
+    words = words[2:] if reference else words
+    for arguments in [words] if words else stale():
+        print(record(arguments, reference), flush=True)

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from measured import core_of, time
 from ringlet.data.files import replacing
 
 RESULTS = Path(__file__).parents[1] / "bench" / "results"
@@ -50,7 +51,7 @@ def published(peers: dict[str, Any]) -> Iterator[str]:
 def all_runs(runs: dict[str, Any]) -> Iterator[str]:
     """A line for every run that is kept."""
     yield "## Every run\n\nCPU time: median, and from the least to the most of the evaluations after a warm-up.\n"
-    yield "| command | CPU | from, to | threads | contacts | when | load | processor |\n" + "|---" * 8 + "|"
+    yield "| command | CPU | from, to | threads | contacts | of | when | load | processor |\n" + "|---" * 9 + "|"
     for run in runs.values():
         result = run["result"]
         if "cpu_ms" not in result:
@@ -60,11 +61,6 @@ def all_runs(runs: dict[str, Any]) -> Iterator[str]:
         load = "" if run["load"] is None else f"{run['load']:g}"  # not measured
         yield (
             f"| `{run['command']}` | {time(cpu['median'])} | {time(cpu['min'])}, {time(cpu['max'])} | "
-            f"{result['threads']}, {result['simd']} | {contacts} | {run['date']} | {load} | "
+            f"{result['threads']}, {result['simd']} | {contacts} | {core_of(run)} | {run['date']} | {load} | "
             f"{run['processor']} |"
         )
-
-
-def time(milliseconds: float) -> str:
-    """A time with three digits, in ms or s."""
-    return f"{milliseconds:.3g} ms" if milliseconds < 1000 else f"{milliseconds / 1e3:.3g} s"

@@ -9,6 +9,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 from benchmarks import write_benchmarks
 from docstrings import as_list
 from figures import write_figures
+from measured import Growth, Measured
 from plots import write_convergence, write_memory, write_release, write_tips
 from reference import write_references
 from theory import write_theory
@@ -35,6 +36,8 @@ html_theme_options = {
 
 
 def setup(app):
+    app.add_directive("growth", Growth)
+    app.add_directive("measured", Measured)
     write_references(Path(app.srcdir) / "_generated")
     write_benchmarks(Path(app.srcdir) / "_generated" / "benchmarks.md")
     write_convergence(Path(app.srcdir) / "_generated" / "convergence.svg")

@@ -14,7 +14,7 @@ PLACES = 16  # of a head, which say whether a surface is around it
 def facing_inside(points: NDArray, triangles: NDArray, head: NDArray | None = None) -> NDArray[np.bool_]:
     """Mask of the triangles that face the inside of a closed surface, or of one with small openings, shape (m,).
 
-    How that is known is told in the core (geometry/orientation.h).
+    How that is known stands in the core (geometry/orientation.h).
 
     head: points of a head [m], shape (k, 3). A surface around it that faces it is a room, and stays as it is
     """

@@ -1,0 +1,89 @@
+"""Tables of what was measured: a directive whose rows name runs in bench/results, so that no figure is typed.
+
+```{measured}
+a step of 500 strands | strands_threads_1
+curl 2 000 locks | slider_threads_1 | curl
+```
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from docutils.nodes import Element, Node
+from docutils.statemachine import StringList
+from sphinx.util.docutils import SphinxDirective
+
+ROOT = Path(__file__).parents[1]
+RESULTS = ROOT / "bench" / "results"
+
+
+class Measured(SphinxDirective):
+    """A line gives what was measured, the run, and the stage where it is not the whole."""
+
+    has_content = True
+
+    def run(self) -> list[Node]:
+        """The table."""
+        lines = ["| what | command | CPU | of |", "|---|---|---|---|"]
+        for line in self.content:
+            what, name, *stage = (cell.strip() for cell in line.split("|"))
+            run = json.loads((RESULTS / f"{name}.json").read_text())
+            milliseconds = run["result"]["stages"][stage[0]] if stage else run["result"]["cpu_ms"]["median"]
+            lines.append(f"| {what} | `{run['command']}` | {time(milliseconds)} | {core_of(run)} |")
+        within = Element()
+        self.state.nested_parse(StringList(lines), 0, within)
+        return within.children
+
+
+class Growth(SphinxDirective):
+    """A table of a run of ``ringlet bench growth``, which is the argument, with its exponents."""
+
+    required_arguments = 1
+
+    def run(self) -> list[Node]:
+        """The table and a sentence."""
+        run = json.loads((RESULTS / f"{self.arguments[0]}.json").read_text())
+        result = run["result"]
+        lines = [
+            f"`{run['command']}`, of {core_of(run)}: time grows with exponent {result['exponent']:.2f}, contacts with "
+            f"{result['contacts_exponent']:.2f}.",
+            "",
+            "| wisps | CPU per step (median) | contacts | CG iterations per step |",
+            "|---|---|---|---|",
+        ]
+        lines += [
+            f"| {one['strands']:,} | {time(one['cpu_ms'])} | {one['contacts']:,.0f} | {one['linear_iterations']:.0f} |"
+            for one in result["sizes"]
+        ]
+        within = Element()
+        self.state.nested_parse(StringList(lines), 0, within)
+        return within.children
+
+
+def time(milliseconds: float) -> str:
+    """A time with three digits, in ms or s."""
+    return f"{milliseconds:.3g} ms" if milliseconds < 1000 else f"{milliseconds / 1e3:.3g} s"
+
+
+def core_of(run: dict[str, Any]) -> str:
+    """The commit that a run is of, and whether its sources are those of today."""
+    if "commit" not in run:
+        return "an older core"
+    now = {folder: tree_of(folder) for folder in run["sources"]}
+    changed = "" if now == run["sources"] else ", changed since"
+    if not (beside := run.get("beside")):
+        return run["commit"] + changed
+    spread = f"{beside['least']:.2f} to {beside['most']:.2f}"
+    return f"{run['commit']}{changed}; by turns {beside['ratio']:.2f} times {beside['commit']} ({spread})"
+
+
+@cache
+def tree_of(folder: str) -> str:
+    """The name that git gives the content of a folder at HEAD; empty where there is no history."""
+    command = ["git", "rev-parse", "--verify", "--quiet", f"HEAD:{folder}"]
+    return subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True).stdout.strip()
