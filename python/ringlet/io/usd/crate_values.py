@@ -107,27 +107,30 @@ def _lz4(data: bytes, size: int) -> bytes:
     """A block of LZ4: literals, then a match in what is there already, and so on."""
     made, place = bytearray(), 0
 
-    def length(short: int) -> int:
+    def longer() -> int:
         nonlocal place
-        more = 255 if short == 15 else 0
+        length, more = 15, 255
         while more == 255:
             more = data[place]
             place += 1
-            short += more
-        return short
+            length += more
+        return length
 
     try:
         while place < len(data):
             token = data[place]
             place += 1
-            literals = length(token >> 4)
+            literals = token >> 4
+            if literals == 15:
+                literals = longer()
             made += data[place : place + literals]
             place += literals
             if place >= len(data):
                 break
             back = data[place] | data[place + 1] << 8
             place += 2
-            count, start = length(token & 15) + 4, len(made) - back
+            count, start = token & 15, len(made) - back
+            count = (longer() if count == 15 else count) + 4
             if back == 0 or start < 0 or len(made) + count > size:
                 raise ValueError("a match is outside the block")
             made += (made[start:] * (count // back + 1))[:count] if count > back else made[start : start + count]
