@@ -24,6 +24,7 @@ from ringlet.io.hair import HEADER
 from ringlet.io.tfx import HEADER as TFX
 from ringlet.shot import parse_shot
 from ringlet.viewer import protocol
+from ringlet.viewer.display_groom import GroomEvaluator
 from ringlet.viewer.grooming import Grooming
 from ringlet.viewer.project import Project
 from ringlet.viewer.session import Session
@@ -723,19 +724,38 @@ SCALPS = [
 ]  # fmt: skip
 
 
-def asked(*messages: protocol.FromPage, file: str = RECIPE, before_last: Act = lambda: None) -> Act:
-    """Sends messages to a review; the last after an act."""
+def asked(
+    *steps: protocol.FromPage | Callable[[Session], object],
+    file: str = RECIPE,
+    before_last: Act = lambda: None,
+    groomed: bool = False,
+) -> Act:
+    """Sends messages to a review, between other steps; the last after an act. groomed: when a groom is shown."""
 
     def act() -> None:
         session = Session(Path(file).resolve(), Project(Path.cwd()))
         page = session.join("one", leads=True)
-        with patch.object(Grooming, "request"):
-            for message in messages[:-1]:
-                session.handle(page, message)
-            before_last()
-            session.handle(page, messages[-1])
+        with patch.object(Grooming, "request"), patch.object(Grooming, "request_of"):
+            if groomed:
+                shown(session)
+            for k, step in enumerate(steps):
+                if k == len(steps) - 1:
+                    before_last()
+                step(session) if callable(step) else session.handle(page, step)
 
     return act
+
+
+def shown(session: Session) -> None:
+    """Makes the groom of a review, and shows it."""
+    document = session.files.recipe
+    made = GroomEvaluator(session.project).groom(document.model, draft=False, check_abort=lambda: None)
+    session._show(made, document.revision)
+
+
+def in_several() -> None:
+    """Writes the recipe as one of several grooms."""
+    wrote("all.recipe.toml", Path(RECIPE).read_text().replace('name = "small"', "").replace("\n[", "\n[grooms.a."))()
 
 
 WIDER = protocol.Set(changes=[(["curl", "width"], 1.7)], gesture=1)
@@ -755,8 +775,9 @@ REVIEW = [
         gesture=1)), asked(protocol.Set(file="shot", changes=[(["preroll"], 1)], gesture=1), file=SHOT)),
     Advice("outside of the project {}; move it there", asked(protocol.Open(name="../b.recipe.toml")),
         asked(protocol.Open(name=SHOT))),
-    Advice("{}: shape has {} operators; there is none at {}", asked(protocol.Arrange(action="remove", at=3)),
-        asked(protocol.Arrange(action="add", at=0, op="frizz"), protocol.Arrange(action="remove", at=0))),
+    Advice("{}: shape has {} operators; there is none at {}", in_order(in_several, asked(protocol.Arrange(
+        action="remove", at=3), file="all.recipe.toml")), asked(protocol.Arrange(action="add", at=0, op="frizz"),
+        protocol.Arrange(action="remove", at=0), file="all.recipe.toml")),
     Advice("preset: {} sets none of these tables; choose others", asked(protocol.Keep(name="mine", tables=["fiber"])),
         asked(protocol.Keep(name="mine", tables=["curl"]))),
     Advice("preset: {} is there already; give another name", asked(protocol.Keep(name="two", tables=["curl"]),

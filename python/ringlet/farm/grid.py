@@ -81,7 +81,7 @@ def choose(name: str, values: Sequence[Any] | str) -> Choice:
             place.append(matches[0])
             table = _section_of(table.model_fields[matches[0]].annotation)
     if not place or not values:
-        raise UserError(f"wedge: '{name}': names no setting, or no value for it; give SETTING=VALUE,VALUE…")
+        raise UserError(f"wedge: '{name}': names no setting, or no value for it; give a setting and its values")
     return Choice(setting_name(tuple(place)), tuple(place), tuple(values))
 
 
@@ -92,7 +92,7 @@ def make_tasks(shot: Path, choices: Sequence[Choice], folder: Path) -> list[Task
     """
     for choice in choices:
         if sum(other.place == choice.place for other in choices) > 1:
-            raise UserError(f"wedge: {choice.name} is given twice; name all its values in one --set")
+            raise UserError(f"wedge: {choice.name} is given twice; give all its values at once")
     count = 1
     for choice in choices:
         count *= len(choice.values)

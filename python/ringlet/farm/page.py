@@ -13,7 +13,7 @@ import numpy as np
 from ringlet.data.errors import UserError
 from ringlet.data.files import replacing
 from ringlet.data.regular import open_regular
-from ringlet.farm.task import RESULT, Result, read_result
+from ringlet.farm.task import PLACES, RESULT, Result, read_result
 from ringlet.report import Picture, Table, document, figure, line_chart, table
 
 PAGE = "wedge.html"
@@ -57,7 +57,7 @@ def distances(results: dict[Path, Result]) -> dict[Path, float]:
 
     Tasks with other locks have no entry.
     """
-    places = {at: _places(at / "places.npy") for at, result in results.items() if result.state == "done"}
+    places = {at: _places(at / PLACES) for at, result in results.items() if result.state == "done"}
     first = next(iter(places.values()), None)
     return {
         at: float(np.sqrt(((points - first) ** 2).sum(axis=1).mean()))

@@ -35,9 +35,9 @@ from ringlet.report import percent
 from ringlet.shot import Shot
 
 FORMAT = 1
-RESULT, CACHE = "result.json", "cache.usdc"
+RESULT, CACHE, PLACES = "result.json", "cache.usdc", "places.npy"
 PART = f"{CACHE}.part"
-WRITTEN = ("shot.toml", "groom.usdc", "rest.usdc", CACHE, "hair.usdc", "still.png", "places.npy", RESULT, "log.txt")
+WRITTEN = ("shot.toml", "groom.usdc", "rest.usdc", CACHE, "hair.usdc", "still.png", PLACES, RESULT, "log.txt")
 HAIRS = 6000  # number of hairs in a picture
 SERIES = ("wall_ms", "max_stretch")  # statistics of each frame in the result
 
@@ -158,7 +158,7 @@ def _simulate(task: Task, options: TaskOptions, log: Log, progress: Progress) ->
     inputs = api.run_inputs(shot, groom, frames=options.frames)
     made_from = digest(inputs, options.frames, options.frame, options.picture)
     previous = read_result(task.folder)
-    if previous and previous.state == "done" and previous.made_from == made_from and cache.exists():
+    if previous and previous.state == "done" and previous.made_from == made_from and _complete(task.folder, options):
         log("is done already")
         return previous
 
@@ -192,6 +192,11 @@ def _simulate(task: Task, options: TaskOptions, log: Log, progress: Progress) ->
         _draw(task.folder, groom, groom_file, cache, frame)
     series = {name: [float(frame.get(name, 0.0)) for frame in simulated.statistics] for name in SERIES}
     return Result(task.settings, "done", "", made_from, round(seconds, 3), numbers, series, task.order)
+
+
+def _complete(folder: Path, options: TaskOptions) -> bool:
+    """Whether the files of a task that is done are still there."""
+    return all((folder / name).exists() for name in (CACHE, PLACES, *(["still.png"] if options.picture else [])))
 
 
 def _groom(shot: Shot, folder: Path, log: Log) -> tuple[Groom, Path]:
@@ -248,7 +253,7 @@ def _numbers_of_motion(folder: Path, groom: Groom, cache: Path, frame: int) -> d
             points = simulated.points(at)
             extents.append(np.linalg.norm(points[offsets[1:] - 1] - points[offsets[:-1]], axis=1))
             if at == frame:
-                with replacing(folder / "places.npy") as aside, aside.open("wb") as file:
+                with replacing(folder / PLACES) as aside, aside.open("wb") as file:
                     np.save(file, points)
     return {
         "bounce, mm": float(1e3 * np.ptp(extents, axis=0).mean()),

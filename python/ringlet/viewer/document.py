@@ -219,7 +219,7 @@ class Document:
                 text = set_value(text, place, value)
             except (TOMLKitError, KeyError, IndexError, TypeError, ValueError) as error:
                 where = ".".join(str(part) for part in place)
-                raise UserError(f"{self.path.name}: {where} cannot be set ({error}); undo, or edit the file") from None
+                raise UserError(f"{self.path.name}: {where} cannot be set ({error}); edit it in the file") from None
         self.apply(text, gesture=gesture, maps={**self.state.maps, **(maps or {})})
 
     def add_tables(self, name: str, at: int, entries: Sequence[dict[str, Any]]) -> None:

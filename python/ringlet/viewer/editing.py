@@ -127,7 +127,7 @@ class Editing:
                 self._pages.notice(f"{path.name} is kept")
                 page.queue.put("presets", self._presets.message())
             case _:
-                raise UserError(f"message: {message.kind} is not for this file; open another with: ringlet view")
+                raise UserError(f"message: {message.kind} must be the first of a page")
 
     def edited(self, file: File, *, resting: bool = True) -> None:
         """Publishes a document that has changed, and requests its groom: a draft of one that is not ``resting``."""

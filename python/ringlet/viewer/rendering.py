@@ -48,6 +48,7 @@ class Rendering:
             light_turn=message.light_turn,
             bounces=BOUNCES,
         )
+        task = RenderTask(pose_of(viewport), camera_of(message, viewport.origin), settings)
         process, self._spare = self._spare or RenderProcess(), None
         self._running[page] = process
 
@@ -55,7 +56,7 @@ class Rendering:
             if self._running.get(page) is process:
                 page.put("rendered", _answer(message, step))
 
-        process.run(RenderTask(pose_of(viewport), camera_of(message, viewport.origin), settings), send)
+        process.run(task, send)
         self._spare = RenderProcess()
 
     def cancel(self, page: SendQueue) -> None:

@@ -104,8 +104,7 @@ class Sculptor:
         self._files.write_edits("sculpt", [])
 
     def _begin(self, gesture: int, groom: Groom) -> Stroke:
-        if groom.unsculpted is None:
-            raise UserError("sculpt: there is no recipe whose guides could be sculpted; open one with: ringlet view")
+        assert groom.unsculpted is not None  # it was made from the open recipe
         document = self._files.recipe
         if document.contents().get("sculpt"):
             raise UserError(

@@ -7,6 +7,7 @@ recipe extends may change later, so that a snapshot also has ``ID.resolved.toml`
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -100,21 +101,20 @@ def load(store: SnapshotStore, id: str, files: Files) -> bool:
     """
     document, texts, stored = files.recipe, store.texts(id), store[id]
     wanted = settings_of(recipe_of(texts, files))
-    for text, edits in _candidates(document, texts):
-        try:
-            if settings_of(files.parse(text, document.path, edits)) != wanted:
-                continue
-        except UserError:
-            continue
-        document.apply(text, edits=edits, muted=frozenset(stored.muted), solo=stored.solo)
-        return "extends" not in texts.written or "extends" in text
-    raise UserError(f"snapshot: {id} cannot be loaded; compare with it, or copy {id}{RECIPE}")
+    *nearer, (text, edits) = _candidates(document, texts)
+    for some in nearer:
+        with suppress(UserError):
+            if settings_of(files.parse(some[0], document.path, some[1])) == wanted:
+                text, edits = some
+                break
+    document.apply(text, edits=edits, muted=frozenset(stored.muted), solo=stored.solo)
+    return "extends" not in texts.written or "extends" in text
 
 
 def _candidates(document: Document, texts: Texts) -> list[tuple[str, str]]:
     """Texts of a recipe and of its file of edits that may have the settings of a snapshot, the best first.
 
-    The first keeps the comments and the order of the present text; the last does not depend on other recipes.
+    The first keeps the comments and the order of the present text; the last is the snapshot itself.
     """
     merged: list[tuple[str, str]] = []
     try:
@@ -122,4 +122,5 @@ def _candidates(document: Document, texts: Texts) -> list[tuple[str, str]]:
         merged = [(versions.merged([place for place, _ in versions.differences()]), texts.edits)]
     except (ValueError, KeyError, IndexError, TypeError):
         pass  # the notation differs too much
-    return [*merged, (texts.written, texts.edits), (texts.resolved, "")]
+    written = texts.written, texts.edits
+    return [*merged, written, *([(texts.resolved, "")] if texts.resolved != texts.written else [])]

@@ -29,9 +29,8 @@ def variant(document: Document, parse: Callable[[str, Path, str], Recipe], path:
 
     Raises UserError when the notation of variants cannot express the difference.
     """
-    text = ""
+    text = _text(document, edits)
     try:
-        text = _text(document, edits)
         equal = settings_of(parse(text, path, document.state.edits)) == settings_of(document.model)
     except UserError:
         equal = False
@@ -107,9 +106,7 @@ def _current_value(model: Any, name: str) -> Any:
         table = value.model_dump(mode="json", exclude_defaults=True)
         return {**table, "value": f"{table['value']!r} m"} if length and "value" in table else table
     if value is None:
-        raise UserError(
-            f"save: {name} cannot be removed in a variant; save a copy in place of a variant"
-        )  # TOML has no null
+        raise UserError(f"save: {name} cannot be removed in a variant; save a copy instead")  # TOML has no null
     return f"{value!r} m" if length and isinstance(value, float) else value
 
 
