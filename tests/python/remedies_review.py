@@ -89,7 +89,7 @@ def wedge(values: int) -> Act:
 
 def scheduled() -> None:
     """A wedge on a scheduler that was started."""
-    started = LocalCluster(n_workers=0, processes=False, dashboard_address=None)
+    started = LocalCluster(n_workers=0, processes=False, dashboard_address="127.0.0.1:0")
     with started, cluster._client(started.scheduler_address, None, 0):
         pass
 
