@@ -131,7 +131,11 @@ def paint(mesh):
         (lambda mesh: lower(mesh, 0.075), SCARF, ["'scarf'", "begins through 'skin'"]),
         (paint, SCARF + '[[cloth.pin]]\nmap = "pin"\n', ["'scarf'", "pin[0]", "no vertex"]),
         (lambda mesh: None, SCARF + '[[cloth.pin]]\nto = "skin"\nwithin = 0.01\n', ["pin[0].within", "0.01 m"]),
-        (lambda mesh: None, SCARF + SCARF.replace("[contact]", ""), ["two cloths", "'scarf'"]),
+        (
+            lambda mesh: None,
+            SCARF + SCARF.replace("[contact]", ""),
+            ["cloth[1].mesh is /wear/scarf", "is a cloth already"],
+        ),
     ],
 )
 def test_unusable_cloth_is_refused_and_leaves_no_file(cloth_example, tmp_path, change, text, words):

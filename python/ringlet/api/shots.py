@@ -447,10 +447,10 @@ def _garments(shot: Shot, groom: Groom, frames: tuple[int, int]) -> list[Garment
         surface = body if groom.cage else io.read_body(file, cloth.mesh, frames, groom.space.fps)
         if sim.Obstacle(surface.mesh, surface.clip).is_surface_of(groom.scalp):
             raise UserError(f"{what}, the scalp that hair grows on; name another mesh")
-        if garment.name in [other.name for other in garments]:
-            raise UserError(f"shot: two cloths are called '{garment.name}'; give one of them another `name`")
         if any(other.prim == body.prim and same_place(other.file or file, file) for other in garments):
             raise UserError(f"{what}, which is a cloth already; take one of them away")
+        if garment.name in [other.name for other in garments]:
+            raise UserError(f"shot: two cloths are called '{garment.name}'; give one of them another `name`")
         garments.append(garment)
     return garments
 

@@ -39,7 +39,10 @@ class Mirror(Section):
         across, scalp = unit(np.array(self.across)), context.scalp
         side = (guides.roots - scalp.middle) @ across - self.offset
         if not (side > -self.seam).any():
-            raise UserError("guides.mirror: there is no guide on the side that is kept; turn 'across' round")
+            raise UserError(
+                "guides.mirror: there is no guide on the side that is kept; turn 'across' round, or bring 'offset' "
+                "nearer to 0"
+            )
         kept, off_plane = guides.take(side > -self.seam), guides.take(side >= self.seam)
         if len(off_plane) == 0:
             return kept

@@ -250,7 +250,8 @@ def _grooms(source: Source, root: Usd.Prim) -> dict[str, dict[str, Any]]:
         raise UserError(f"{source.path}: ringlet:grooms is damaged; make the groom again")
     grooms = present({"grooms": grooms}, f"{source.path}: ringlet:grooms")[0]["grooms"]
     for path in (LOCKS, GUIDES) if grooms else ():
-        rows = UsdGeom.PrimvarsAPI(source.stage.GetPrimAtPath(path)).GetPrimvar(f"ringlet:{ROW}").Get()
+        primvar = UsdGeom.PrimvarsAPI(source.stage.GetPrimAtPath(path)).GetPrimvar(f"ringlet:{ROW}")
+        rows = primvar.Get() if primvar else None
         if rows is None or not len(rows) or min(rows) < 0 or max(rows) >= len(grooms) or list(rows) != sorted(rows):
             raise UserError(f"{source.path}: {path} does not give the groom of each curve; make the groom again")
     return grooms
@@ -305,7 +306,8 @@ def scalp_source(source: Source) -> tuple[Path, str]:
 
     Raises UserError for a groom without a scalp.
     """
-    targets = source.stage.GetRelationshipAtPath(f"{GROOM}.ringlet:scalp").GetTargets()
+    relationship = source.stage.GetRelationshipAtPath(f"{GROOM}.ringlet:scalp")
+    targets = relationship.GetTargets() if relationship else []
     if not targets:
         raise UserError(f"{source.path}: does not name its scalp (ringlet:scalp); make the groom again")
     for spec in source.stage.GetPrimAtPath(BODY).GetPrimStack():
