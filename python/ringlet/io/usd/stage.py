@@ -10,6 +10,7 @@ import difflib
 import json
 import os
 import re
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
@@ -29,6 +30,7 @@ from ringlet.io.usd.skinning import Skinning
 
 SURFACE, LIMIT, CAGE = "ringlet:surface", "limit", "cage"  # attribute of /groom, and its values
 NOT_TEXT = "it holds text that is not UTF-8"
+TICK = 0.1  # of the clock of a file system, at most [s]
 UNITS, RATES = (1e-9, 1e6), (1e-2, 1e5)  # bounds of metersPerUnit and of timeCodesPerSecond
 SUFFIXES = (".usd", ".usda", ".usdc", ".usdz")
 
@@ -116,16 +118,18 @@ def _reload(stage: Usd.Stage, path: Path) -> None:
     """Reloads the layers of a stage, since another open stage may share outdated ones.
 
     Reloading a layer may change the set of used layers, so the set is queried again after each. Raises UserError for a
-    layer that another open stage holds, but whose file is gone.
+    layer that another open stage holds, but whose file is gone. A file that was written a moment ago may have been
+    written twice within a tick of its clock.
     """
     reloaded = set[str]()
     while pending := [layer for layer in stage.GetUsedLayers() if layer.identifier not in reloaded]:
         reloaded.add(pending[0].identifier)
         if pending[0].anonymous:
             continue
-        if not Path(pending[0].realPath.split("[")[0]).exists():  # a layer in a package has its path in brackets
+        file = Path(pending[0].realPath.split("[")[0])  # a layer in a package has its path in brackets
+        if not file.exists():
             raise UserError(f"{path}: uses {pending[0].realPath}, which is not there; put it back")
-        pending[0].Reload()
+        pending[0].Reload(force=time.time() - file.stat().st_mtime < TICK)
 
 
 def _reads_cages(stage: Usd.Stage) -> bool:
@@ -211,7 +215,9 @@ def new_stage(aside: Path, space: StageSpace, over: Path | str | None = None) ->
     space: unit, up-axis and frame rate
     over:  file to add as a sublayer
     """
-    layer = Sdf.Layer.CreateNew(str(aside))
+    # The layer of an attempt that failed lives on in the frames of its error, while somebody keeps that.
+    layer = Sdf.Layer.Find(str(aside)) or Sdf.Layer.CreateNew(str(aside))
+    layer.Clear()
     layer.defaultPrim = "groom"
     layer.timeCodesPerSecond = layer.framesPerSecond = space.fps
     if over is not None:
