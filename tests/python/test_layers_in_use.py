@@ -31,7 +31,7 @@ def height(file) -> float:
 def test_a_file_that_was_written_twice_in_a_tick_is_read_anew(tmp_path):
     file = tmp_path / "mesh.usda"
     write(file, 1.0)
-    held, time = Usd.Stage.Open(str(file)), os.stat(file).st_mtime_ns
+    held, time = Usd.Stage.Open(str(file)), file.stat().st_mtime_ns
     write(file, 2.0)
     os.utime(file, ns=(time, time))
     assert height(file) == 2.0
