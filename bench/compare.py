@@ -1,4 +1,4 @@
-"""Runs benchmarks by turns: this Ringlet against another commit, which is built beside it."""
+"""Runs benchmarks by turns: this Ringlet against a reference commit, built in a work tree of its own."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def built(commit: str) -> Path:
         git("worktree", "add", "--detach", "--force", str(place / "tree"), found, cwd=ROOT)
     subprocess.run([sys.executable, "-m", "venv", "--without-pip", str(place / "venv")], check=True)
     own = place / "venv" / Path(sysconfig.get_path("purelib")).relative_to(sys.prefix)
-    (own / "beside.pth").write_text("".join(f"{path}\n" for path in sys.path if path.endswith("site-packages")))
+    (own / "packages.pth").write_text("".join(f"{path}\n" for path in sys.path if path.endswith("site-packages")))
     pip = [sys.executable, "-m", "pip", "install", "--quiet", "--no-build-isolation", "--no-deps", "--target", str(own)]
     subprocess.run([*pip, str(place / "tree")], check=True, env=os.environ | {"PIP_DISABLE_PIP_VERSION_CHECK": "1"})
     (place / "whole").touch()

@@ -50,7 +50,7 @@ def record(arguments: list[str], reference: str | None = None) -> Path:
     }
     if reference := reference or kept.get("commit"):
         turns = run((reference, " ".join(arguments)))[" ".join(arguments)]
-        entry["beside"] = {"commit": reference, **{name: turns[name] for name in ("ratio", "least", "most")}}
+        entry["reference"] = {"commit": reference, **{name: turns[name] for name in ("ratio", "least", "most")}}
     path.write_text(json.dumps(entry, indent=1) + "\n")
     return path
 

@@ -76,10 +76,10 @@ def core_of(run: dict[str, Any]) -> str:
         return "an older core"
     now = {folder: tree_of(folder) for folder in run["sources"]}
     changed = "" if now == run["sources"] else ", changed since"
-    if not (beside := run.get("beside")):
+    if not (reference := run.get("reference")):
         return run["commit"] + changed
-    spread = f"{beside['least']:.2f} to {beside['most']:.2f}"
-    return f"{run['commit']}{changed}; by turns {beside['ratio']:.2f} times {beside['commit']} ({spread})"
+    spread = f"{reference['least']:.2f} to {reference['most']:.2f}"
+    return f"{run['commit']}{changed}; by turns {reference['ratio']:.2f} times {reference['commit']} ({spread})"
 
 
 @cache
