@@ -34,7 +34,7 @@ class Measured(SphinxDirective):
             what, name, *stage = (cell.strip() for cell in line.split("|"))
             run = json.loads((RESULTS / f"{name}.json").read_text())
             milliseconds = run["result"]["stages"][stage[0]] if stage else run["result"]["cpu_ms"]["median"]
-            lines.append(f"| {what} | `{run['command']}` | {time(milliseconds)} | {core_of(run)} |")
+            lines.append(f"| {what} | `{run['command']}` | {time(milliseconds)} | {core_of(run, whole=not stage)} |")
         within = Element()
         self.state.nested_parse(StringList(lines), 0, within)
         return within.children
@@ -70,13 +70,13 @@ def time(milliseconds: float) -> str:
     return f"{milliseconds:.3g} ms" if milliseconds < 1000 else f"{milliseconds / 1e3:.3g} s"
 
 
-def core_of(run: dict[str, Any]) -> str:
-    """The commit that a run is of, and whether its sources are those of today."""
+def core_of(run: dict[str, Any], whole: bool = True) -> str:
+    """The commit that a run is of, whether its sources are those of today, and the ratio by turns of the whole."""
     if "commit" not in run:
         return "an older core"
     now = {folder: tree_of(folder) for folder in run["sources"]}
     changed = "" if now == run["sources"] else ", changed since"
-    if not (reference := run.get("reference")):
+    if not whole or not (reference := run.get("reference")):
         return run["commit"] + changed
     spread = f"{reference['least']:.2f} to {reference['most']:.2f}"
     return f"{run['commit']}{changed}; by turns {reference['ratio']:.2f} times {reference['commit']} ({spread})"
