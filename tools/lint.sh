@@ -13,14 +13,9 @@ types() { # the compiled module is seen through its stub
     $bin/python -m nanobind.stubgen -q -m ringlet._core -o python/ringlet/_core.pyi && $bin/pyright --warnings
 }
 
-tidy() { # clang-tidy brings headers of its own, but not that of OpenMP: it gets the compiler's, after all others
-    local openmp
-    openmp=$(dirname "$(${CXX:-c++} -print-file-name=include/omp.h)")
-    # Each file by itself, and without the flags that only GCC knows.
-    $bin/cmake -S . -B build/tidy -D RINGLET_UNITY=OFF -D SKBUILD_PROJECT_VERSION=0 -D Python_EXECUTABLE="$PWD/$bin/python" >/dev/null
-    sed -i -E 's/ -m(memcpy|memset|move|store)-[^ ]*//g' build/tidy/compile_commands.json
-    $bin/python $bin/run-clang-tidy.py -quiet -j 2 -p build/tidy -clang-tidy-binary "$PWD/$bin/clang-tidy" \
-        -extra-arg=-idirafter -extra-arg="$openmp" 'src/ringlet/'
+tidy() {
+    $bin/cmake -S . -B build/tidy -D RINGLET_UNITY=OFF -D SKBUILD_PROJECT_VERSION=0 -D Python_EXECUTABLE="$PWD/$bin/python" >/dev/null &&
+        $bin/python tools/tidy.py build/tidy
 }
 
 mapfile -d '' cpp < <(find src bindings tests/cpp -name '*.h' -print0 -o -name '*.cpp' -print0)
