@@ -3,21 +3,22 @@
 set -u
 cd "$(dirname "$0")/.."
 bin=.venv/bin
-log=$(mktemp) slow=$(mktemp)
-trap 'rm -f "$log" "$slow"' EXIT
-failed=()
+results=$(mktemp -d)
+trap 'rm -rf "$results"' EXIT
 
 step() { # name, command …
-    local name=$1 start=$SECONDS
-    shift
-    if "$@" >"$log" 2>&1; then
+    local name=$1 start=$SECONDS log
+    log=$(mktemp -p "$results" --suffix .log)
+    if "${@:2}" >"$log" 2>&1; then
         printf 'ok      %-40s %4d s\n' "$name" $((SECONDS - start))
     else
-        printf 'FAILED  %-40s %4d s\n' "$name" $((SECONDS - start))
-        sed 's/^/        /' "$log"
-        failed+=("$name")
+        (
+            flock 9 # of two that fail at once
+            printf 'FAILED  %-40s %4d s\n' "$name" $((SECONDS - start))
+            sed 's/^/        /' "$log"
+            echo "$name" >&9
+        ) 9>>"$results/failed"
     fi
-    grep -E '^[0-9.]+s (call|setup|teardown) ' "$log" >>"$slow"
 }
 
 cpp_tests() {
@@ -26,22 +27,25 @@ cpp_tests() {
 }
 
 # Two tests at a time, each on one thread: threads that wait for one another would take the processors from the other test.
-pytests() { OMP_NUM_THREADS=1 $bin/python -m pytest -n 2 --durations 8 "$@"; }
+# Each worker begins with half of the files in a row, so that what a file shares is made once.
+pytests() { OMP_NUM_THREADS=1 $bin/python -m pytest -n 2 --dist worksteal --durations 8 "$@"; }
 
 step "C++ tests" cpp_tests
 step "Python tests" pytests tests/python
 step "physics tests" pytests tests/physics
 step "counts of instructions and calls" $bin/python -m pytest -rs tests/counts # with valgrind, where there is one
 step "browser tests" pytests -rs tests/browser # in headless Chromium; where there is none they are skipped, and say so
-step "known answers (ringlet validate)" $bin/ringlet validate
-step "lints" tools/lint.sh
-step "documents" tools/docs.sh
+# At once, since each leaves a processor idle for a time.
+step "known answers (ringlet validate)" $bin/ringlet validate &
+step "lints" tools/lint.sh &
+step "documents" tools/docs.sh &
+wait
 
 printf '\nThe slowest tests:\n'
-sort -rn "$slow" | head -n 8
+grep -hE '^[0-9.]+s (call|setup|teardown) ' "$results"/*.log | sort -rn | head -n 8
 
-if ((${#failed[@]})); then
-    printf '\nRinglet: %d of 8 steps failed: %s\n' ${#failed[@]} "$(IFS=,; echo "${failed[*]}")"
+if [ -s "$results/failed" ]; then
+    printf '\nRinglet: %d of 8 steps failed: %s\n' "$(wc -l <"$results/failed")" "$(paste -sd, "$results/failed")"
     exit 1
 fi
 printf '\nRinglet: everything holds (%d s).\n' $SECONDS
