@@ -41,9 +41,9 @@ def cylinder(count: int = 700, **fiber: float) -> Curves:
     return curves
 
 
-def seen(hairs: Curves, samples: int = 24, denoiser: str = "builtin") -> np.ndarray:
+def seen(hairs: Curves, samples: int = 40, denoise: bool = True) -> np.ndarray:
     scene = build_scene([], hairs, AHEAD, size=(SIZE, SIZE), color=None, max_depth=2, rig=Sun())
-    return trace(scene, samples=samples, denoiser=denoiser)[:, :, :3].mean(axis=2)
+    return trace(scene, samples=samples, denoise=denoise)[:, :, :3].mean(axis=2)
 
 
 def band(**fiber: float) -> tuple[float, float, int, float]:
@@ -79,7 +79,7 @@ def test_the_band_is_as_wide_as_the_roughness_says_and_smooth_along_it():
         assert widths[roughness] == pytest.approx(0.5 * lobe, rel=0.25)
         assert peaks == 1
         assert variation < 0.14
-    noisy = seen(cylinder(roughness=0.15), denoiser="none")
+    noisy = seen(cylinder(roughness=0.15), denoise=False)
     row = noisy[noisy.mean(axis=1).argmax(), 6:-6]
     assert row.std() / row.mean() > 0.2
 
@@ -123,7 +123,7 @@ def test_single_hairs_stay_and_noise_does_not():
         for _ in range(4):
             passes.add(0.3 + hairs + random.normal(0.0, 0.2, (48, 48, 4)))
         flat = np.full((48, 48, 4), 0.3) + hairs.mean()
-        kept = passes.detail(passes._sums, flat, field)[8:-8, 8:-8]
+        kept = passes.detail(flat, field)[8:-8, 8:-8]
         scale = (stripes - stripes.mean())[8:-8, 8:-8]
         assert least <= (kept * scale).sum() / (scale**2).sum() <= most
         assert kept.std() < (0.02 if not hairs.any() else 0.12)

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from ringlet.picture.denoise import denoise
+from ringlet.picture import oidn
+from ringlet.picture.along import HairField
 from ringlet.picture.passes import Passes
+
+pytest.importorskip("pyoidn")
 
 
 def accumulate(passes: np.ndarray) -> Passes:
@@ -32,8 +35,7 @@ def test_fireflies_are_spread_over_their_neighbourhood_and_light_is_conserved() 
 def test_fireflies_leave_no_dot_on_noisy_skin(where: int) -> None:
     passes = np.random.default_rng(where).uniform(0.4, 0.6, (3, 40, 40, 4))
     passes[where, 20, 20, :3] += 5.0
-    accumulated = accumulate(passes)
-    denoised = accumulated.without_noise(accumulated.without_specks())
+    denoised = oidn.denoise(accumulate(passes).mean())
     around = denoised[14:27, 14:27, :3]
     assert np.abs(denoised[20, 20, :3] - around.mean()).max() < 0.1
 
@@ -42,18 +44,19 @@ def test_denoising_removes_noise_and_keeps_edges() -> None:
     clean = np.full((60, 60, 4), 0.2)
     clean[:, 30:] = 0.8
     noise = np.random.default_rng(4).normal(0.0, 0.05, clean.shape)
-    other = np.random.default_rng(5).normal(0.0, 0.05, clean.shape)
-    denoised = denoise(clean + noise, clean + other, np.full(clean.shape, 0.05**2))
+    denoised = oidn.denoise(clean + noise)
     assert np.abs(denoised - clean).mean() < 0.3 * np.abs(noise).mean()
-    assert (denoised[:, 30] - denoised[:, 29]).min() > 0.5
-    assert np.allclose(denoise(clean, clean, np.zeros(clean.shape)), clean, atol=1e-3)
+    assert np.median(denoised[:, 30] - denoised[:, 29]) > 0.5
+    assert (denoised[:, 30] - denoised[:, 29]).min() > 0.3
+    assert np.abs(oidn.denoise(clean) - clean).mean() < 1e-2
 
 
-@pytest.mark.parametrize("passes", [3, 4, 5, 10])
-def test_cross_filtering_leaves_less_noise_than_self_filtering(passes: int) -> None:
-    light = np.random.default_rng(passes).uniform(0.0, 1.0, (passes, 80, 80, 1)).repeat(4, axis=3)
-    mean, variance = light.mean(axis=0), light.var(axis=0, ddof=1)
-    accumulated = accumulate(light)
-    denoised = accumulated.without_noise([light[::2].sum(axis=0), light[1::2].sum(axis=0)])
-    assert denoised.std() < 0.8 * denoise(mean, mean, variance / passes).std()
-    assert denoised.mean() == pytest.approx(mean.mean(), rel=5e-3)
+def test_detail_of_hair_adds_no_light() -> None:
+    passes = np.random.default_rng(7).gamma(0.5, 1.0, (6, 60, 60, 4))
+    passes[:, :, ::3] *= 2.0  # single hairs
+    passes[:, :, :, 3] = 1.0
+    accumulated, upright = accumulate(passes), np.broadcast_to(np.float32([-1.0, 0.0]), (60, 60, 2))
+    even = np.full((60, 60, 4), accumulated.mean().mean(axis=(0, 1)))
+    detail = accumulated.detail(even, HairField(np.ones((60, 60), np.float32), upright))
+    assert np.abs(detail[10:-10, 12:-12, :3].mean()) < 0.01 * even[0, 0, :3].mean()
+    assert detail[:, 12:-12:3, :3].mean() > 0.2 * even[0, 0, :3].mean()

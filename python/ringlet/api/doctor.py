@@ -133,7 +133,7 @@ def _optional(package: str, title: str, use: str) -> Callable[[], Finding]:
 _dask = _optional("distributed", "dask.distributed", "for wedges: pip install 'ringlet[farm]'")
 _openjd = _optional("openjd-cli", "Open Job Description", "to run templates: pip install 'ringlet[farm]'")
 _alembic = _optional("alembic3d", "Alembic", "for .abc files: pip install 'ringlet[alembic]'")
-_oidn = _optional("pyoidn", "Open Image Denoise", "for --denoiser oidn: pip install 'ringlet[denoise]'")
+_oidn = _optional("pyoidn", "Open Image Denoise", "for pictures without noise: pip install pyoidn")
 _ffmpeg = _optional("imageio-ffmpeg", "imageio-ffmpeg", "for videos: pip install 'ringlet[movie]'")
 
 

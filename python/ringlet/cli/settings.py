@@ -48,7 +48,7 @@ SETTINGS = [
     setting("light_turn", float, "Turns the light about the vertical, counter-clockwise from above.", "DEGREES"),
     setting("background", str, "studio or transparent."),
     setting("shutter", float, "Motion blur: 180 has the shutter open for half a frame.", "DEGREES"),
-    setting("denoiser", str, "builtin, oidn (Intel Open Image Denoise) or none."),
+    setting("denoiser", str, "oidn (Intel Open Image Denoise, the default where it is installed) or none."),
     setting("engine", str, "scalar, or llvm: compiled, by a library of LLVM 17 or newer."),
 ]
 UNITS = {"distance": CENTIMETRE, "focus": CENTIMETRE}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass, fields
+from importlib.util import find_spec
 from math import isfinite
 from typing import Any, ClassVar, Self
 
@@ -13,7 +14,7 @@ from ringlet.data.explain import did_you_mean
 
 CHOICES = {
     "background": ("studio", "transparent"),
-    "denoiser": ("builtin", "oidn", "none"),
+    "denoiser": ("oidn", "none"),
     "engine": ("scalar", "llvm"),
 }
 
@@ -40,7 +41,7 @@ class PictureSettings:
     light_turn:    turns the light about the vertical [degrees], counter-clockwise from above
     background:    studio or transparent; an EXR has no backdrop
     shutter:       angle of the shutter [degrees], for motion blur: 180 is open for half a frame from the frame on
-    denoiser:      builtin, oidn or none
+    denoiser:      oidn, which is Intel Open Image Denoise and the default where it is installed, or none
     engine:        scalar, or llvm, which compiles for each scene, needs more memory and a library of LLVM
     """
 
@@ -77,7 +78,7 @@ class PictureSettings:
     light_turn: float = 0.0
     background: str = "studio"
     shutter: float = 0.0
-    denoiser: str = "builtin"
+    denoiser: str = "oidn" if find_spec("pyoidn") else "none"
     engine: str = "scalar"
 
     @classmethod

@@ -60,7 +60,7 @@ def hair_field(mi: Any, scene: Any) -> HairField:
     to_camera = np.array(scene.sensors()[0].world_transform().matrix).reshape(4, 4)[:3, :3].T
     sums: Any = 0.0
     for seed in range(RAYS):
-        seen = np.array(mi.render(scene, sensor=1, integrator=integrator, spp=1, seed=seed), np.float64)
+        seen = np.array(mi.render(scene, integrator=integrator, spp=1, seed=seed), np.float64)
         hair = is_hair[np.rint(seen[:, :, 3]).astype(np.int64)].astype(np.float64)
         run = seen[:, :, :3] @ to_camera.T[:, :2]
         squared = np.maximum((run**2).sum(axis=2), 1e-30)

@@ -52,8 +52,6 @@ class HairGroup:
 def trace_layers(mi: Any, scene: Any, camera: Camera, groups: dict[str, HairGroup], *, scale: float) -> Layers:
     """Casts rays of one sample per pixel, so that each hits one surface, and takes the means.
 
-    The second sensor of the scene has no pixel filter.
-
     groups: hairs by the names of their shapes
     scale:  scene units per metre; the origin of the scene is the camera's target
     """
@@ -66,7 +64,7 @@ def trace_layers(mi: Any, scene: Any, camera: Camera, groups: dict[str, HairGrou
     sums: Any = 0.0
     lock: Any = None
     for number in range(SAMPLES):
-        rays = np.array(mi.render(scene, sensor=1, integrator=integrator, spp=1, seed=number), np.float64)
+        rays = np.array(mi.render(scene, integrator=integrator, spp=1, seed=number), np.float64)
         position, normal, albedo = np.split(rays[:, :, :9], 3, axis=2)
         shape, segment = (np.rint(rays[:, :, k]).astype(np.int64) for k in (9, 10))
         seen, hit = shown[shape][:, :, None], np.full(shape.shape, NOTHING, np.int32)

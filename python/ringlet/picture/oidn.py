@@ -1,4 +1,4 @@
-"""Denoising by Intel Open Image Denoise (``pyoidn``, an optional package), guided by albedo and normals."""
+"""Denoising by Intel Open Image Denoise (``pyoidn``), which has no wheel for Linux on ARM64."""
 
 from __future__ import annotations
 
@@ -6,8 +6,6 @@ from importlib.util import find_spec
 
 import numpy as np
 from numpy.typing import NDArray
-
-from ringlet.picture.layers import Layers
 
 
 def available() -> bool:
@@ -18,10 +16,12 @@ def available() -> bool:
         return False
 
 
-def denoise(image: NDArray[np.floating], layers: Layers) -> NDArray[np.float32]:
-    """Denoises light of shape (height, width, 4); keeps the coverage."""
+def denoise(image: NDArray[np.floating]) -> NDArray[np.floating]:
+    """Denoises light and coverage, shape (height, width, 4); keeps where a pixel is covered all over, or not at all."""
     import pyoidn  # pyright: ignore[reportMissingImports]
 
     light = np.ascontiguousarray(image[:, :, :3], np.float32)
-    guides = [np.ascontiguousarray(guide, np.float32) for guide in (np.clip(layers.albedo, 0.0, 1.0), layers.normal)]
-    return np.concatenate([pyoidn.denoise(light, *guides, hdr=True), image[:, :, 3:]], axis=2).astype(np.float32)
+    coverage = np.ascontiguousarray(image[:, :, 3:].repeat(3, axis=2), np.float32)
+    covered = pyoidn.denoise(coverage, hdr=False)[:, :, :1]
+    certain = (image[:, :, 3:] == 0.0) | (image[:, :, 3:] == 1.0)
+    return np.concatenate([pyoidn.denoise(light, hdr=True), np.where(certain, image[:, :, 3:], covered)], axis=2)

@@ -1,8 +1,7 @@
-"""Accumulation of independent render passes; their differences reveal fireflies and noise."""
+"""Accumulation of independent render passes; what their halves share is no noise."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -10,7 +9,6 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 
 from ringlet.picture.along import HairField
-from ringlet.picture.denoise import denoise
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 DARKEST = 1e-4  # luminance below which detail has no color of its surroundings
@@ -27,7 +25,6 @@ class Passes:
     def __init__(self) -> None:
         self.count = 0
         self._sums: list[Any] = [0.0, 0.0]
-        self._squares: Any = 0.0
         self._brightest: Any = 0.0
         self._half_of_brightest: Any = 0
 
@@ -35,7 +32,6 @@ class Passes:
         """Adds a pass."""
         half = self.count % 2
         self._sums[half] = self._sums[half] + image
-        self._squares = self._squares + image**2
         self._half_of_brightest = np.where(image > self._brightest, half, self._half_of_brightest)
         self._brightest = np.maximum(self._brightest, image)
         self.count += 1
@@ -64,35 +60,30 @@ class Passes:
         spread = np.clip(before / np.maximum(after, 1e-9), 1.0, 2.0)
         return [spread * (self._sums[half] - firefly * (self._half_of_brightest == half)) for half in (0, 1)]
 
-    def without_noise(self, sums: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
-        """Denoised mean of all passes, from the sums of both halves; needs at least three passes.
-
-        The other half, with its fireflies, is the guide of each half, since the variance includes them.
-        """
-        variance = np.maximum(self._squares / self.count - self.mean() ** 2, 0.0) * self.count / (self.count - 1)
-        (many, few), (a, b) = self.counts, sums
-        denoised = denoise(a / many, self._sums[1] / few, variance / few) * many
-        denoised += denoise(b / few, self._sums[0] / many, variance / many) * few
-        return denoised / self.count
-
-    def detail(
-        self, sums: Sequence[NDArray[np.float64]], denoised: NDArray[np.float64], hair: HairField
-    ) -> NDArray[np.float64]:
+    def detail(self, denoised: NDArray[np.floating], hair: HairField) -> NDArray[np.float64]:
         """What both halves have in common beyond the denoised mean, such as single hairs; needs two passes.
 
-        A Wiener filter of the residual along the hairs. Noise of the halves is independent, so their covariance is that
-        of the detail, which bounds it: what stands out further is a speck. Detail has the color of its surroundings.
+        A Wiener filter of the residual along the hairs, less its mean around a pixel: detail adds no light. Noise of
+        the halves is independent, so their covariance is that of the detail, which bounds it: what stands out further
+        is a speck. Detail has the color of its surroundings.
         """
         light = denoised[:, :, :3] @ LUMINANCE
-        a, b = (
-            hair.along(_brightness(total / count - denoised)) for total, count in zip(sums, self.counts, strict=True)
+        residuals = (
+            _brightness(total / count - denoised)
+            for total, count in zip(self.without_specks(), self.counts, strict=True)
         )
+        a, b = (hair.along(residual - _around(residual)) for residual in residuals)
         mean = (a * self.counts[0] + b * self.counts[1]) / self.count
-        common, power = (gaussian_filter(x, (DETAIL_WINDOW, DETAIL_WINDOW, 0.0)) for x in (a * b, mean**2))
+        common, power = _around(a * b), _around(mean**2)
         brightest = BRIGHTEST * np.sqrt(np.maximum(common, 0.0))
         kept = np.clip(mean, -brightest, brightest) * np.clip(common / np.maximum(power, 1e-12), 0.0, 1.0)
         colored = denoised[:, :, :3] * (kept[:, :, 0] / np.maximum(light, DARKEST))[:, :, None]
         return np.concatenate([colored, kept[:, :, 1:]], axis=2)
+
+
+def _around(image: NDArray[np.floating]) -> NDArray[np.floating]:
+    """Means of an image (height, width, channels) around its pixels."""
+    return gaussian_filter(image, (DETAIL_WINDOW, DETAIL_WINDOW, 0.0))
 
 
 def _brightness(image: NDArray[np.float64]) -> NDArray[np.float64]:

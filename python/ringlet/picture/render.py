@@ -66,8 +66,7 @@ def build_scene(
     scene: dict[str, Any] = {
         "type": "scene",
         "integrator": {"type": "path", "max_depth": max_depth, "rr_depth": 2, "hide_emitters": True},
-        "sensor": _sensor(mi, camera, size, scale, {"type": "gaussian", "stddev": 0.45}),
-        "layer_sensor": _sensor(mi, camera, size, scale, {"type": "box"}),
+        "sensor": _sensor(mi, camera, size, scale),
         **rig.emitters(mi, target, scale),
     }
     for index, body in enumerate(bodies):
@@ -87,10 +86,11 @@ def scene_scale(camera: Camera) -> float:
     return 100.0 / camera.distance
 
 
-def _sensor(
-    mi: Any, camera: Camera, size: tuple[int, int], scale: float, pixel_filter: dict[str, Any]
-) -> dict[str, Any]:
-    """The camera in the scene, whose origin is the camera's target."""
+def _sensor(mi: Any, camera: Camera, size: tuple[int, int], scale: float) -> dict[str, Any]:
+    """The camera in the scene, whose origin is the camera's target.
+
+    Its pixels share no samples: a denoiser takes noise that they share for detail, and layers have one surface a ray.
+    """
     place = scale * camera.distance * camera.axes[2]
     sensor: dict[str, Any] = {
         "type": "perspective",
@@ -106,7 +106,7 @@ def _sensor(
             "height": size[1],
             "pixel_format": "rgba",
             "component_format": "float32",
-            "rfilter": pixel_filter,
+            "rfilter": {"type": "box"},
         },
     }
     if camera.lens_radius:
@@ -125,8 +125,7 @@ def trace(
     samples: int,
     seconds: float | None = None,
     progress: Progress | None = None,
-    denoiser: str = "builtin",
-    layers: Layers | None = None,
+    denoise: bool = True,
     moved: Callable[[float], Any] | None = None,
 ) -> NDArray[np.float32]:
     """Renders light and coverage (r, g, b, a), shape (height, width, 4): the mean of independent passes, denoised.
@@ -134,8 +133,7 @@ def trace(
     samples:  light paths per pixel
     seconds:  time limit; a pass that would exceed it is not started
     progress: called with "picture", the passes done and their number
-    denoiser: builtin, oidn or none
-    layers:   what guides the denoiser oidn
+    denoise:  whether noise is removed; it takes three passes
     moved:    builds the scene at a fraction of the shutter time, for motion blur
     """
     mi = mitsuba()
@@ -157,41 +155,37 @@ def trace(
             break
     if progress and done < passes:
         progress("picture", passes, passes)
-    if denoiser == "oidn" and layers is not None:
-        return oidn.denoise(accumulated.mean(), layers)
-    if done < 3 or denoiser == "none":
+    if done < 3 or not denoise:
         return accumulated.mean().astype(np.float32)
     return _denoised(scene, accumulated)
 
 
 def trace_growing(
-    scene: Any, camera: Camera, size: tuple[int, int], samples: int, coarse: int = COARSE
+    scene: Any, camera: Camera, size: tuple[int, int], samples: int, *, denoise: bool = True, coarse: int = COARSE
 ) -> Iterator[tuple[NDArray[np.floating], int]]:
     """Renders as ``trace``, and yields the picture as it grows: light and coverage, and the samples that it has.
 
-    The first is small, of one sample; then one of each sample per pixel so far; the last is denoised.
+    The first is small, of one sample; then one of each sample per pixel so far; the last is denoised as in ``trace``.
 
     coarse: most pixels along a side of the small one
     """
-    mi, accumulated = mitsuba(), Passes()
+    mi, accumulated, denoised = mitsuba(), Passes(), denoise and samples >= 3
     if max(size) > coarse:
         small = tuple(max(1, round(side * coarse / max(size))) for side in size)
-        sensor = _sensor(mi, camera, (small[0], small[1]), scene_scale(camera), {"type": "box"})
+        sensor = _sensor(mi, camera, (small[0], small[1]), scene_scale(camera))
         yield np.nan_to_num(np.array(mi.render(scene, sensor=mi.load_dict(sensor), spp=1), np.float64)), 1
     for done in range(samples):
         accumulated.add(np.nan_to_num(np.array(mi.render(scene, spp=1, seed=done), np.float64)))
-        if done + 1 < samples or samples < 3:
+        if done + 1 < samples or not denoised:
             yield accumulated.mean(), done + 1
-    if samples >= 3:
+    if denoised:
         yield _denoised(scene, accumulated), samples
 
 
 def _denoised(scene: Any, accumulated: Passes) -> NDArray[np.float32]:
-    """The mean of at least three passes without specks and noise, with the detail of its hair."""
-    halves = accumulated.without_specks()
-    denoised = accumulated.without_noise(halves)
-    hair = hair_field(mitsuba(), scene)
-    return np.asarray(denoised + hair.share[:, :, None] * accumulated.detail(halves, denoised, hair), np.float32)
+    """The mean of at least three passes without noise, with the detail of its hair."""
+    denoised, hair = oidn.denoise(accumulated.mean()), hair_field(mitsuba(), scene)
+    return np.asarray(denoised + hair.share[:, :, None] * accumulated.detail(denoised, hair), np.float32)
 
 
 def layers_of(scene: Any, camera: Camera, hairs: Curves, color: HairColor | None) -> Layers:

@@ -39,7 +39,7 @@ def sheet(
     title: str = "",
     fps: float = 24.0,
     hairs: int = 6000,
-    samples: int = 12,
+    samples: int = 8,
     settings: PictureSettings | None = None,
     progress: Progress | None = None,
 ) -> Path:
@@ -72,7 +72,12 @@ def sheet(
     rig = Rig(settings.light, settings.light_turn, camera.axes, camera.target, camera.distance)
     tiles = []
     for number, bodies, curves in shots:
-        tiles.append((number, draw_tile(bodies, curves, camera, tile, pigments, samples, rig)))
+        tiles.append(
+            (
+                number,
+                draw_tile(bodies, curves, camera, tile, pigments, samples, rig, denoise=settings.denoiser == "oidn"),
+            )
+        )
         if progress:
             progress("sheet", len(tiles), len(shots))
     first, last = tiles[0][0], tiles[-1][0]
@@ -109,12 +114,14 @@ def draw_tile(
     pigments: HairColor | None,
     samples: int,
     rig: Rig | None = None,
+    *,
+    denoise: bool = True,
 ) -> NDArray[np.uint8]:
     """Renders a tile, shape (height, width, 3)."""
     scene = build_scene(
         bodies, hairs, camera, size=tile, color=pigments, max_depth=PictureSettings.bounces + 1, rig=rig
     )
-    return develop(over_backdrop(trace(scene, samples=samples)))
+    return develop(over_backdrop(trace(scene, samples=samples, denoise=denoise)))
 
 
 def arrange_tiles(

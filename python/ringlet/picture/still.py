@@ -127,18 +127,16 @@ def _taken(
         at = camera if now.camera is None else place(settings, subject(now), lock, now.camera).camera
         return build_scene(now.bodies, now.hairs, at, **look)
 
-    scene, needs_layers = scene_at(0.0), layers or settings.denoiser == "oidn"
-    guides = layers_of(scene, camera, pose.hairs, pigments) if needs_layers else None
+    scene = scene_at(0.0)
     image = trace(
         scene,
         samples=settings.samples,
         seconds=settings.seconds,
         progress=progress,
-        denoiser=settings.denoiser,
-        layers=guides,
+        denoise=settings.denoiser == "oidn",
         moved=None if closing is None else scene_at,
     )
-    return Taken(image, guides)
+    return Taken(image, layers_of(scene, camera, pose.hairs, pigments) if layers else None)
 
 
 def place(
@@ -161,7 +159,7 @@ def rig_around(settings: PictureSettings, seen: Sequence[NDArray[np.floating]], 
 def growing(pose: Pose, camera: Camera, settings: PictureSettings) -> Iterator[tuple[Image.Image, int]]:
     """Pictures from a camera as they grow, developed, and the samples that each has; the last is that of ``still``.
 
-    Takes width, height, samples, colour, light and bounces of the settings; denoises with ``builtin``.
+    Takes width, height, samples, colour, light, bounces and denoiser of the settings.
 
     Raises UserError for an unknown colour or light, and without hairs and bodies.
     """
@@ -175,14 +173,14 @@ def growing(pose: Pose, camera: Camera, settings: PictureSettings) -> Iterator[t
     }
     with using(settings.engine):
         scene = build_scene(pose.bodies, pose.hairs, camera, **look)
-        for image, samples in trace_growing(scene, camera, size, settings.samples):
+        for image, samples in trace_growing(scene, camera, size, settings.samples, denoise=settings.denoiser == "oidn"):
             yield developed(np.asarray(image, np.float32), settings.background), samples
 
 
 def check_denoiser(name: str) -> None:
     """Raises UserError for a denoiser that is not installed."""
     if name == "oidn" and not oidn.available():
-        raise UserError("picture: the denoiser oidn needs pyoidn; install it with: pip install 'ringlet[denoise]'")
+        raise UserError("picture: the denoiser oidn needs pyoidn; install it with: pip install pyoidn")
 
 
 def developed(image: NDArray[np.float32], background: str) -> Image.Image:
