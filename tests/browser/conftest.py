@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from review import CHROMIUM, FLAGS, PATIENCE, SKETCH, Review, Server
+from review import CHROMIUM, FLAGS, PATIENCE, UNSEEN, Review, Server
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "python"))
 from small_example import write_example
@@ -21,7 +21,7 @@ REQUIRED = os.environ.get("RINGLET_BROWSER") == "required"  # set in continuous 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     reason = ""
     if CHROMIUM is None:
-        reason = "there is no Chromium here: apt-get install chromium"
+        reason = "there is no Chromium here: apt-get install chromium-headless-shell"
     elif not STATIC.exists():
         reason = "the page was not built: make build"
     else:
@@ -48,7 +48,11 @@ def browser() -> Iterator[Any]:
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    return write_example(tmp_path / "project")
+    """The small example with thick hairs: its pictures need the fewest drawings."""
+    folder = write_example(tmp_path / "project")
+    recipe = folder / "small.recipe.toml"
+    recipe.write_text(recipe.read_text() + 'width = "0.3 mm"\n')
+    return folder
 
 
 @pytest.fixture
@@ -69,10 +73,10 @@ def serve(folder: Path) -> Iterator[Callable[[str], Server]]:
 def opened(browser: Any, serve: Callable[[str], Server]) -> Iterator[Callable[..., Review]]:
     contexts: list[Any] = []
 
-    def open_page(server: Server | str = "small.recipe.toml", *, pixels: float | None = SKETCH, **more: Any) -> Review:
+    def open_page(server: Server | str = "small.recipe.toml", *, pixels: float | None = UNSEEN, **more: Any) -> Review:
         """A page in a context of its own; see ``Review`` for the pixels of its picture."""
         address = (serve(server) if isinstance(server, str) else server).address
-        options = {"viewport": {"width": 1000, "height": 640}, "color_scheme": "dark", **more}
+        options = {"viewport": {"width": 1000, "height": 640}, "color_scheme": "dark", "reduced_motion": "reduce", **more}
         contexts.append(browser.new_context(**options))
         contexts[-1].set_default_timeout(1000 * PATIENCE)
         return Review(contexts[-1].new_page(), address, pixels=pixels)

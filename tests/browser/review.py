@@ -17,9 +17,9 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-CHROMIUM = next(
-    (found for name in ("chromium", "chromium-browser", "google-chrome") if (found := shutil.which(name))), None
-)
+# The headless shell draws no window of a browser around the page, which would take half of the time.
+BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
+CHROMIUM = next((found for name in BROWSERS if (found := shutil.which(name))), None)
 FLAGS = [
     "--no-sandbox",
     "--use-angle=swiftshader",
@@ -78,26 +78,39 @@ class Server:
         self.pid = 0
 
 
-SKETCH = 0.2  # pixels of a picture that nobody looks at, over those of the page
+UNSEEN = 0.2  # pixels of a picture that is drawn only where a test asks for it, over those of the page
 
-# Each picture is drawn once and in one go; one that nobody looks at has no light in its hair.
-ONCE = """({ lit }) => {
-    const { pace, hair } = ringlet.viewer, { slice } = pace;
+# Each picture is drawn once and in one go. One that nobody looks at is said to be drawn, and has no light in its hair.
+LEAST = """
+Object.defineProperty(window, 'ringlet', { configurable: true, set(app) {
+    Object.defineProperty(window, 'ringlet', { value: app });
+    const { viewer } = app, { pace, painter, view, hair } = viewer, { slice } = pace;
     pace.needed = () => 1;
     pace.slice = (moving) => (moving ? slice.call(pace, true) : { drawing: Infinity, computing: Infinity });
-    if (!lit) for (const one of Object.values(hair)) one.light = function* () {};
-}"""
+    if (SEEN) return;
+    for (const one of Object.values(hair)) one.light = function* () {};
+    viewer.picture = function* () {
+        view.camera.updateMatrixWorld();
+        painter.aimAtAll(view);
+        [this.lacking, this.fresh] = [0, true];
+        this.drawn++;
+        this.onPaint();
+        return { portion: { drawings: 1, fraction: 1 }, shown: hair.a.count };
+    };
+} });
+"""
 
 
 def coarse(pixels: float) -> str:
     """A script after which a picture has so many pixels for each of the page."""
-    return f"Object.defineProperty(window, 'devicePixelRatio', {{ get: () => {pixels} }})"
+    return f"Object.defineProperty(window, 'devicePixelRatio', {{ get: () => {pixels} }});"
 
 
 class Review:
     """An open page of the review.
 
-    pixels: of its picture over those of the page, which is then drawn with the least work; None: as users see it
+    pixels: of its picture over those of the page, which is then drawn with the least work, and live where they are more
+            than ``UNSEEN``; None: as users see it
     """
 
     def __init__(self, page: Any, address: str, *, pixels: float | None = None) -> None:
@@ -108,12 +121,9 @@ class Review:
             "console", lambda message: self.errors.append(message.text) if "shader" in message.text.lower() else None
         )
         if pixels is not None:
-            page.add_init_script(coarse(pixels))
+            page.add_init_script(coarse(pixels) + LEAST.replace("SEEN", "true" if pixels > UNSEEN else "false"))
         page.goto(address)
-        self.until("window.ringlet")
-        if pixels is not None:
-            page.evaluate(ONCE, {"lit": pixels > SKETCH})
-        self.until("ringlet.viewer.hair.a.table && ringlet.settled")
+        self.until("window.ringlet?.viewer.hair.a.table && ringlet.settled")
 
     def get(self, expression: str) -> Any:
         return self.page.evaluate(f"() => {expression}")

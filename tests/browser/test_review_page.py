@@ -19,7 +19,7 @@ SIXTY_FRAMES = """() => new Promise(done => {
 
 
 def test_an_idle_page_draws_nothing(opened: Any):
-    review: Review = opened()
+    review: Review = opened(pixels=0.5)
     review.settled()
     review.until("ringlet.model.measured && ringlet.viewer.idle")
     before = review.get("ringlet.viewer.pictures")
@@ -28,7 +28,7 @@ def test_an_idle_page_draws_nothing(opened: Any):
 
 
 def test_the_page_says_when_it_has_settled(opened: Any):
-    review: Review = opened()
+    review: Review = opened(pixels=0.5)
     assert review.get("ringlet.settled")
     change = "ringlet.model.say({ kind: 'set', changes: [[['curl', 'width'], 2]], gesture: 1 })"
     assert not review.get(f"({change}, ringlet.settled)")

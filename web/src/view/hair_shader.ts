@@ -145,16 +145,18 @@ vec2 onScreen(vec3 place) {
 }
 void main() {
   uint found = texelFetch(seen, ivec2(gl_FragCoord.xy), 0).r;
+  for (uint once = min(found, 1u); once > 0u; once--) { // SwiftShader skips the body of a loop, but not that of an if
+    int hair = int(found - 1u) / points, last = int(found - 1u) - hair * points, first = (last - 1) / stride * stride;
+    vec3 from = hairAt(hair, first).xyz, to = hairAt(hair, last).xyz;
+    vec2 square = vec2(projectionMatrix[1][1] / projectionMatrix[0][0], 1.0), begin = onScreen(from);
+    vec2 way = square * (onScreen(to) - begin);
+    float t = clamp(dot(square * (screen - begin), way) / max(dot(way, way), 1e-12), 0.0, 1.0);
+    vec3 q;
+    float mark, overlay;
+    traits(hair, mix(float(first), float(last), t) / float(points - 1), q, mark, overlay);
+    color = vec4(shade(mix(from, to, t), mix(tangentAt(hair, first), tangentAt(hair, last), t), q, mark, overlay), 1.0);
+  }
   if (found == 0u) discard;
-  int hair = int(found - 1u) / points, last = int(found - 1u) - hair * points, first = (last - 1) / stride * stride;
-  vec3 from = hairAt(hair, first).xyz, to = hairAt(hair, last).xyz;
-  vec2 square = vec2(projectionMatrix[1][1] / projectionMatrix[0][0], 1.0), begin = onScreen(from);
-  vec2 way = square * (onScreen(to) - begin);
-  float t = clamp(dot(square * (screen - begin), way) / max(dot(way, way), 1e-12), 0.0, 1.0);
-  vec3 q;
-  float mark, overlay;
-  traits(hair, mix(float(first), float(last), t) / float(points - 1), q, mark, overlay);
-  color = vec4(shade(mix(from, to, t), mix(tangentAt(hair, first), tangentAt(hair, last), t), q, mark, overlay), 1.0);
 }
 `;
 
