@@ -73,13 +73,20 @@ def serve(folder: Path) -> Iterator[Callable[[str], Server]]:
 def opened(browser: Any, serve: Callable[[str], Server]) -> Iterator[Callable[..., Review]]:
     contexts: list[Any] = []
 
-    def open_page(server: Server | str = "small.recipe.toml", *, pixels: float | None = UNSEEN, **more: Any) -> Review:
-        """A page in a context of its own; see ``Review`` for the pixels of its picture."""
+    def open_page(
+        server: Server | str = "small.recipe.toml", *, pixels: float | None = UNSEEN, live: bool = False, **more: Any
+    ) -> Review:
+        """A page in a context of its own; see ``Review`` for its picture."""
         address = (serve(server) if isinstance(server, str) else server).address
-        options = {"viewport": {"width": 1000, "height": 640}, "color_scheme": "dark", "reduced_motion": "reduce", **more}
+        options = {
+            "viewport": {"width": 1000, "height": 640},
+            "color_scheme": "dark",
+            "reduced_motion": "reduce",
+            **more,
+        }
         contexts.append(browser.new_context(**options))
         contexts[-1].set_default_timeout(1000 * PATIENCE)
-        return Review(contexts[-1].new_page(), address, pixels=pixels)
+        return Review(contexts[-1].new_page(), address, pixels=pixels, live=live)
 
     yield open_page
     for context in contexts:

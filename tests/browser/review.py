@@ -78,18 +78,17 @@ class Server:
         self.pid = 0
 
 
-UNSEEN = 0.2  # pixels of a picture that is drawn only where a test asks for it, over those of the page
+UNSEEN = 0.2  # pixels of a picture that nobody looks at, over those of the page
 
-# Each picture is drawn once and in one go. One that nobody looks at is said to be drawn, and has no light in its hair.
-LEAST = """
+# Each picture is drawn in one go, and only where a test asks for it. One that nobody looks at has no light in its hair.
+QUIET = """
 Object.defineProperty(window, 'ringlet', { configurable: true, set(app) {
     Object.defineProperty(window, 'ringlet', { value: app });
     const { viewer } = app, { pace, painter, view, hair } = viewer, { slice } = pace;
     pace.needed = () => 1;
     pace.slice = (moving) => (moving ? slice.call(pace, true) : { drawing: Infinity, computing: Infinity });
-    if (SEEN) return;
-    for (const one of Object.values(hair)) one.light = function* () {};
-    viewer.picture = function* () {
+    if (!LIT) for (const one of Object.values(hair)) one.light = function* () {};
+    if (!LIVE) viewer.picture = function* () {
         view.camera.updateMatrixWorld();
         painter.aimAtAll(view);
         [this.lacking, this.fresh] = [0, true];
@@ -101,6 +100,11 @@ Object.defineProperty(window, 'ringlet', { configurable: true, set(app) {
 """
 
 
+def quiet(pixels: float, *, live: bool) -> str:
+    """A script after which a page draws as little as a test needs."""
+    return coarse(pixels) + QUIET.replace("LIT", json.dumps(pixels > UNSEEN)).replace("LIVE", json.dumps(live))
+
+
 def coarse(pixels: float) -> str:
     """A script after which a picture has so many pixels for each of the page."""
     return f"Object.defineProperty(window, 'devicePixelRatio', {{ get: () => {pixels} }});"
@@ -109,11 +113,11 @@ def coarse(pixels: float) -> str:
 class Review:
     """An open page of the review.
 
-    pixels: of its picture over those of the page, which is then drawn with the least work, and live where they are more
-            than ``UNSEEN``; None: as users see it
+    pixels: of its picture over those of the page, which is drawn where a test asks for it; None: as users see it
+    live:   whether it is drawn at each change too, once
     """
 
-    def __init__(self, page: Any, address: str, *, pixels: float | None = None) -> None:
+    def __init__(self, page: Any, address: str, *, pixels: float | None = None, live: bool = False) -> None:
         self.page = page
         self.errors: list[str] = []
         page.on("pageerror", lambda error: self.errors.append(str(error)))
@@ -121,7 +125,7 @@ class Review:
             "console", lambda message: self.errors.append(message.text) if "shader" in message.text.lower() else None
         )
         if pixels is not None:
-            page.add_init_script(coarse(pixels) + LEAST.replace("SEEN", "true" if pixels > UNSEEN else "false"))
+            page.add_init_script(quiet(pixels, live=live))
         page.goto(address)
         self.until("window.ringlet?.viewer.hair.a.table && ringlet.settled")
 

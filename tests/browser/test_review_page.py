@@ -19,7 +19,7 @@ SIXTY_FRAMES = """() => new Promise(done => {
 
 
 def test_an_idle_page_draws_nothing(opened: Any):
-    review: Review = opened(pixels=0.5)
+    review: Review = opened(live=True)
     review.settled()
     review.until("ringlet.model.measured && ringlet.viewer.idle")
     before = review.get("ringlet.viewer.pictures")
@@ -28,7 +28,7 @@ def test_an_idle_page_draws_nothing(opened: Any):
 
 
 def test_the_page_says_when_it_has_settled(opened: Any):
-    review: Review = opened(pixels=0.5)
+    review: Review = opened(live=True)
     assert review.get("ringlet.settled")
     change = "ringlet.model.say({ kind: 'set', changes: [[['curl', 'width'], 2]], gesture: 1 })"
     assert not review.get(f"({change}, ringlet.settled)")
@@ -73,7 +73,7 @@ def test_the_page_loads_no_external_resource(opened: Any):
 
 
 def test_pictures_and_movies_are_saved(opened: Any):
-    review: Review = opened(pixels=1)
+    review: Review = opened(viewport={"width": 800, "height": 500}, pixels=1, live=True)
     for size, clear in (("", False), ("2048 × 2048", True)):
         review.page.get_by_role("button", name="Save picture").click()
         review.page.get_by_label("Size in pixels").select_option(size)
@@ -82,10 +82,10 @@ def test_pictures_and_movies_are_saved(opened: Any):
             review.page.get_by_role("dialog").get_by_role("button", name="Save", exact=True).click()
         assert picture.value.suggested_filename == "small.png"
         saved = Image.open(picture.value.path())
-        assert saved.size == ((2048, 2048) if clear else (1000, 640))
+        assert saved.size == ((2048, 2048) if clear else (800, 500))
         alpha = np.asarray(saved.convert("RGBA"))[:, :, 3]
         assert (alpha[0, 0] < 10 and alpha[1000, 1000] > 245) if clear else alpha.min() == 255
-    review.until("ringlet.viewer.renderer.domElement.width === 1000")  # that of the page again, once the picture rests
+    review.until("ringlet.viewer.renderer.domElement.width === 800")  # that of the page again, once the picture rests
     film = review.page.get_by_label("Record a movie")
     began = time.monotonic()
     film.click()

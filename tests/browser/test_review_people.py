@@ -147,5 +147,5 @@ def test_a_link_opens_the_view_that_it_was_copied_from(opened: Any, serve: Any):
     assert two.get(EYE) == pytest.approx(one.get(EYE), abs=1e-4)
     assert two.get("[ringlet.model.chosen.place.join(), ringlet.model.overlay]") == ["locks", "pin"]
     assert two.page.get_by_label("Light", exact=True).evaluate("e => e.selectedIndex") == 2
-    two.page.get_by_role("button", name="Follow Guest 1").wait_for(timeout=10_000)
+    two.page.get_by_role("button", name="Follow Guest 1").wait_for()
     assert not two.errors and not one.errors

@@ -35,11 +35,21 @@ def pixels(encoded: str) -> NDArray[np.float64]:
     return np.asarray(picture.convert("RGBA"), np.float64) / 255.0
 
 
-def drawn(review: Review, *, hair: bool = True, clear: bool = False) -> NDArray[np.float64]:
-    """The live picture."""
-    show = f"ringlet.viewer.showHair({str(hair).lower()})"
-    draw = f"ringlet.viewer.drawAt({SIZE}, {SIZE}, {str(clear).lower()}).toDataURL('image/png')"
-    return pixels(review.get(f"({show}, delete ringlet.viewer.pace.needed, {draw})"))  # with all its drawings
+def drawn(review: Review, *, hair: bool = True) -> NDArray[np.float64]:
+    """The live picture, with the coverage of its film as alpha."""
+    picture, alpha = review.page.evaluate(
+        """([hair, size]) => {
+            const { viewer } = ringlet;
+            viewer.showHair(hair);
+            delete viewer.pace.needed; // all its drawings
+            const picture = viewer.drawAt(size, size, false).toDataURL("image/png");
+            return [picture, [...viewer.film.transparent(viewer.renderer).data.filter((_, k) => k % 4 === 3)]];
+        }""",
+        [hair, SIZE],
+    )
+    drawing = pixels(picture)
+    drawing[:, :, 3] = np.reshape(alpha, (SIZE, SIZE)) / 255.0
+    return drawing
 
 
 def rendered(review: Review, size: int = SIZE, samples: int = SAMPLES) -> NDArray[np.float64]:
@@ -77,8 +87,8 @@ def test_the_live_picture_has_the_light_of_the_path_traced_one(opened: Any, fold
     )
     review: Review = opened("look.recipe.toml", viewport={"width": 420, "height": 420}, pixels=1)
     path_traced, live = rendered(review), drawn(review)
-    bare, covered = drawn(review, hair=False), drawn(review, clear=True)[:, :, 3]
-    hair = np.abs(live - bare).max(axis=2) > 0.03
+    bare, covered = drawn(review, hair=False), live[:, :, 3]
+    hair = np.abs(live - bare)[:, :, :3].max(axis=2) > 0.03
     regions = {"hair": hair, "bodies": ~hair & (covered > 0.98), "backdrop": covered < 0.02}
     for region, chosen in regions.items():
         ours, theirs = patches(live, chosen), patches(path_traced, chosen)
