@@ -1,6 +1,6 @@
 """Small workloads whose cost is counted. Each prepares, yields, and then does what is counted.
 
-``python workloads.py SHIM`` runs all under callgrind, which counts between the two requests of the shim.
+``python workloads.py SHIM SHARE SHARES`` runs one share under callgrind, which counts between two requests of the shim.
 """
 
 from __future__ import annotations
@@ -143,7 +143,8 @@ IN_PYTHON = (nod, cold_groom, slider, groom_on_disk)
 
 if __name__ == "__main__":
     shim = ctypes.CDLL(sys.argv[1])
-    for workload in IN_THE_CORE:
+    share, shares = map(int, sys.argv[2:])
+    for workload in IN_THE_CORE[share::shares]:
         running = workload()
         next(running)
         shim.begin()
