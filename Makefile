@@ -14,7 +14,7 @@ sources := pyproject.toml CMakeLists.txt $(wildcard cmake/* python/ringlet/*/__i
 # What the review page is made from.
 page := tools/web.sh $(wildcard web/*.json web/*.ts web/*.html) $(shell find web/src web/public -type f)
 
-.PHONY: help build demo view test blender extension arm bench figures docs gallery lint clean
+.PHONY: help build demo view test prove blender extension arm bench figures docs gallery lint clean
 
 help: ## list the targets
 	@grep -E '^[a-z]+:.*##' Makefile | sed -E 's/:.*## /\t/' | expand -t 10
@@ -51,6 +51,9 @@ view: build ## the example's curls in the browser, to be changed
 
 test: .venv/tooled ## everything: C++, Python, known answers, lints, documents
 	@tools/test.sh
+
+prove: .venv/tooled ## what is too long for a test, before a release: docs/proofs.md
+	@OMP_NUM_THREADS=1 $(python) tools/prove.py
 
 blender: ## Blender's Python module in .venv-blender, 374 MB, for the tests that open files with it
 	python3.11 -m venv .venv-blender
