@@ -13,7 +13,8 @@ import re
 import sys
 import tokenize
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -100,10 +101,33 @@ def joined(pieces: Iterator[Piece]) -> Iterator[Piece]:
     yield block
 
 
-def pattern(retired: list[Retired], separator: str) -> re.Pattern[str]:
+def pattern(retired: tuple[Retired, ...], separator: str) -> re.Pattern[str]:
     """Finds retired words, whole ones in any case; the group of a match is named after the place in the list."""
     found = "|".join(f"(?P<w{i}>{r.words.replace(' ', separator)})" for i, r in enumerate(retired))
     return re.compile(rf"(?<![^\W\d_])(?:{found or '(?!)'})(?![^\W\d_])", re.IGNORECASE)
+
+
+@cache
+def complaints_of(words: tuple[Retired, ...]) -> Callable[[str, bool], list[tuple[int, str]]]:
+    """Finds lines and complaints in a text, by whether it is an identifier. Each text is searched once."""
+    in_prose = tuple(word for word in words if not word.only_names)
+    searches = {True: (words, pattern(words, "_")), False: (in_prose, pattern(in_prose, r"[\s_-]+"))}
+
+    @cache
+    def complaints(text: str, is_name: bool) -> list[tuple[int, str]]:
+        listed, search = searches[is_name]
+        text, found = CAMEL.sub("_", text), []
+        for match in search.finditer(text):
+            word = listed[int((match.lastgroup or "w0")[1:])]
+            found.append((text.count("\n", 0, match.start()), f"{word.words} → {word.say}"))
+        begin = 0
+        for end in [*(match.end() for match in SENTENCE_END.finditer(text)), len(text)]:
+            if (count := len(WORD.findall(text, begin, end))) > LONGEST:
+                found.append((text.count("\n", 0, begin), f"sentence of {count} words → at most {LONGEST}"))
+            begin = end
+        return found
+
+    return complaints
 
 
 def hits(root: Path, folders: tuple[str, ...], retired: list[Retired]) -> Iterator[tuple[Path, int, str]]:
@@ -111,25 +135,17 @@ def hits(root: Path, folders: tuple[str, ...], retired: list[Retired]) -> Iterat
     for file in sorted(file for folder in folders for file in (root / folder).rglob("*") if file.suffix in SUFFIXES):
         where = file.relative_to(root)
         public = PUBLIC.get(where.as_posix(), set())
-        for_names = [
-            word
-            for word in retired
-            if word.words not in public and (not word.folders or str(where).startswith(word.folders))
-        ]
-        for_prose = [word for word in for_names if not word.only_names]
-        in_names, in_prose = pattern(for_names, "_"), pattern(for_prose, r"[\s_-]+")
+        complaints = complaints_of(
+            tuple(
+                word
+                for word in retired
+                if word.words not in public and (not word.folders or str(where).startswith(word.folders))
+            )
+        )
         pieces = python_pieces if file.suffix == ".py" else c_like_pieces
         for line, _, text, kind in sorted(set(joined(pieces(file.read_text())))):
-            words, search = (for_names, in_names) if kind == "name" else (for_prose, in_prose)
-            text = CAMEL.sub("_", text)
-            for match in search.finditer(text):
-                word = words[int((match.lastgroup or "w0")[1:])]
-                yield where, line + text.count("\n", 0, match.start()), f"{word.words} → {word.say}"
-            begin = 0
-            for end in [*(match.end() for match in SENTENCE_END.finditer(text)), len(text)]:
-                if (count := len(WORD.findall(text, begin, end))) > LONGEST:
-                    yield where, line + text.count("\n", 0, begin), f"sentence of {count} words → at most {LONGEST}"
-                begin = end
+            for below, complaint in complaints(text, kind == "name"):
+                yield where, line + below, complaint
 
 
 def main() -> int:
