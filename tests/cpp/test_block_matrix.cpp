@@ -1,5 +1,5 @@
-// Block matrix, incomplete Cholesky and conjugate gradients, against dense solvers.
-#include "conjugate_gradient.h"
+// Block matrix and incomplete Cholesky, against dense matrices.
+#include "plain_system.h"
 #include "ringlet/linear/block_matrix.h"
 #include "ringlet/linear/incomplete_cholesky.h"
 
@@ -74,22 +74,6 @@ BOOST_AUTO_TEST_CASE(the_scalar_rows_are_those_of_the_dense_matrix) {
     BOOST_TEST((dense - system.dense).norm() == 0);
 }
 
-BOOST_AUTO_TEST_CASE(conjugate_gradients_agree_with_a_dense_solver) {
-    const RandomSystem system(40);
-    const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(120, -1, 2);
-    IncompleteCholesky cholesky;
-    cholesky.factor(system.matrix);
-    Eigen::VectorXd x;
-    const ConjugateGradientResult result =
-        conjugate_gradient([&](const auto &v, auto &Av) { system.matrix.multiply(v, Av); },
-                           [&](const auto &r, auto &z) { cholesky.solve(r, z); }, b, x, {1e-12, 1000});
-    const Eigen::VectorXd expected = system.dense.ldlt().solve(b);
-    BOOST_TEST(result.converged);
-    BOOST_TEST(result.iterations <= 240);
-    BOOST_TEST(std::abs(result.residual - (b - system.dense * x).norm() / b.norm()) < 1e-13);
-    BOOST_TEST((x - expected).norm() < 1e-9 * expected.norm());
-}
-
 BOOST_AUTO_TEST_CASE(the_incomplete_factor_of_a_chain_is_exact) {
     // A chain has no fill-in, so its incomplete factor is complete.
     std::vector<std::array<int, 2>> pairs;
@@ -118,12 +102,11 @@ BOOST_AUTO_TEST_CASE(an_incomplete_factor_needs_fewer_iterations_than_no_precond
     const auto apply = [&](const auto &v, auto &Av) { system.matrix.multiply(v, Av); };
     IncompleteCholesky cholesky;
     cholesky.factor(system.matrix);
-    Eigen::VectorXd x;
-    const auto plain = conjugate_gradient(apply, [](const auto &r, auto &z) { z = r; }, b, x, {1e-10, 5000});
-    const auto by_cholesky =
-        conjugate_gradient(apply, [&](const auto &r, auto &z) { cholesky.solve(r, z); }, b, x, {1e-10, 5000});
-    BOOST_TEST(by_cholesky.converged);
-    BOOST_TEST(by_cholesky.iterations < plain.iterations);
+    Eigen::VectorXd plainly, x;
+    const int plain = solve_plainly(apply, [](const auto &r, auto &z) { z = r; }, b, plainly, 1e-10);
+    const int by_cholesky = solve_plainly(apply, [&](const auto &r, auto &z) { cholesky.solve(r, z); }, b, x, 1e-10);
+    BOOST_TEST((system.dense * x - b).norm() < 1e-7 * b.norm());
+    BOOST_TEST(by_cholesky < plain);
 }
 
 BOOST_AUTO_TEST_CASE(an_indefinite_matrix_is_shifted_until_it_has_a_factor) {
@@ -137,17 +120,6 @@ BOOST_AUTO_TEST_CASE(an_indefinite_matrix_is_shifted_until_it_has_a_factor) {
     Eigen::VectorXd x;
     factor.solve(Eigen::VectorXd::Ones(6), x);
     BOOST_TEST(x.allFinite());
-}
-
-BOOST_AUTO_TEST_CASE(conjugate_gradients_report_the_iteration_limit) {
-    const RandomSystem system(40);
-    const Eigen::VectorXd b = Eigen::VectorXd::Ones(120);
-    Eigen::VectorXd x;
-    const ConjugateGradientResult result = conjugate_gradient([&](const auto &v, auto &Av) { system.matrix.multiply(v, Av); },
-                                                              [](const auto &r, auto &z) { z = r; }, b, x, {1e-12, 3});
-    BOOST_TEST(!result.converged);
-    BOOST_TEST(result.iterations == 3);
-    BOOST_TEST(result.residual > 1e-6);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

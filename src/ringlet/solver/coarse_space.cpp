@@ -52,10 +52,10 @@ void CoarseSpace::clear() {
 
 void CoarseSpace::find_forces() {
     aggregate();
+    if (empty()) return;
     const Couplings &couplings = objective_.couplings;
     forces_.assign(couplings.count(), Columns::Zero());
     responses_.assign(couplings.count(), Columns::Zero());
-    if (empty()) return;
     for (const Couplings::Coupling &coupling : couplings.all()) {
         const Mat3 &hessian = objective_.contact_values()[coupling.contact].hessian;
         for (int side = 0; side < 2; ++side) {
@@ -136,7 +136,7 @@ void CoarseSpace::find_responses(int number) {
     const Couplings &couplings = objective_.couplings;
     const BlockSet &blocks = objective_.blocks;
     const int begin = couplings.begin(number), end = couplings.end(number);
-    if (begin == end || !blocks[number].is_exact()) return;
+    if (empty() || begin == end || !blocks[number].is_exact()) return;
     AlignedVector b(blocks[number].size());
     for (int column = 0; column < columns; ++column) {
         b.fill(0.0);

@@ -36,16 +36,20 @@ public:
     bool covers(int cluster) const { return !in_cluster_.empty() && in_cluster_[cluster]; }
     bool empty() const { return aggregates_ == 0; }
 
-    // Sets the coefficients E⁻¹ Zᵀ r of a vector that is given at the points.
-    template <class AtPoint> void project(const AtPoint &r) {
+    // z += Z E⁻¹ Zᵀ r, and P z likewise; r is given at the points by a function, the others as vectors of all points.
+    template <class AtPoint> void add_correction(const AtPoint &r, std::vector<Vec3> &z, std::vector<Vec3> &Pz) {
         coefficients_.assign(aggregates_, Coefficients::Zero());
 #pragma omp parallel for schedule(static)
         for (int a = 0; a < aggregates_; ++a)
             for (const int point : points_.of(a)) coefficients_[a].noalias() += responses_[point].transpose() * r(point);
         solve();
+#pragma omp parallel for schedule(static)
+        for (int a = 0; a < aggregates_; ++a)
+            for (const int point : points_.of(a)) {
+                z[point] += responses_[point] * coefficients_[a];
+                Pz[point] += forces_[point] * coefficients_[a];
+            }
     }
-    Vec3 motion(int point) const { return responses_[point] * coefficients(point); } // Z y
-    Vec3 force(int point) const { return forces_[point] * coefficients(point); }     // P Z y
 
 private:
     struct Cluster {
@@ -57,7 +61,6 @@ private:
         Factor::Block diagonal;
         std::vector<Factor::Entry> below; // left of the diagonal
     };
-    const Coefficients &coefficients(int point) const { return coefficients_[aggregate_[objective_.couplings.object(point)]]; }
     void aggregate();
     Row row(int aggregate) const;
     void solve();

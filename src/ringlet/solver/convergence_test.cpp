@@ -1,5 +1,6 @@
 #include "ringlet/solver/convergence_test.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -20,9 +21,9 @@ ConvergenceTest::ConvergenceTest(double tolerance, const Couplings &couplings, c
     decreases_.fill(std::vector<double>(residual2.size(), std::numeric_limits<double>::infinity()));
 }
 
-void ConvergenceTest::add_decrease(int cluster, double energy) {
-    for (size_t k = decreases_.size() - 1; k > 0; --k) decreases_[k][cluster] = decreases_[k - 1][cluster];
-    decreases_[0][cluster] = energy;
+void ConvergenceTest::add_decreases(const std::vector<double> &of_clusters) {
+    std::rotate(decreases_.begin(), decreases_.end() - 1, decreases_.end());
+    decreases_.front() = of_clusters;
 }
 
 double ConvergenceTest::error2(int cluster) const {

@@ -27,7 +27,7 @@ public:
     ConvergenceTest(double tolerance, const Couplings &couplings, const CoarseSpace &coarse, const std::vector<int> &inexact,
                     const std::vector<double> &residual2, const std::vector<double> &rz);
 
-    void add_decrease(int cluster, double energy); // in one iteration [J]
+    void add_decreases(const std::vector<double> &of_clusters); // in one iteration [J]
 
     // Per object, whether its cluster goes on. One that has converged stays so: while others go on, it is not measured.
     std::vector<unsigned char> unconverged(const IterationProgress &now);
@@ -41,7 +41,7 @@ private:
     std::vector<unsigned char> by_error_;       // per cluster
     std::vector<unsigned char> goes_on_;        // per cluster
     std::vector<double> small_, small_inexact_; // residuals at which clusters and inexact objects have converged
-    std::array<std::vector<double>, solver_settings::error_delay> decreases_; // per cluster, the last first [J]
+    std::array<std::vector<double>, solver_settings::error_delay> decreases_; // of clusters, the last first [J]
 };
 
 } // namespace ringlet

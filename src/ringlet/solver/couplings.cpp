@@ -2,6 +2,8 @@
 
 #include "ringlet/math/disjoint_sets.h"
 
+#include <algorithm>
+
 namespace ringlet {
 
 void Couplings::find(const ContactSet &contacts, const VertexTable &table, const BlockSet &blocks) {
@@ -40,13 +42,22 @@ void Couplings::number_points(const ContactSet &contacts, const VertexTable &tab
     constexpr int none = -1;
     std::vector<int> number(table.dynamic_vertices, none);
     for_coupled([&](int, int, int v) { number[v] = 0; });
+    for (int b = 0; b < blocks.count(); ++b)
+        if (!blocks[b].is_exact())
+            for (const BlockObject &object : blocks[b].objects())
+                std::fill(number.begin() + object.first, number.begin() + object.end, 0);
     points_ = {size_t(blocks.count()), [&](const auto &work) {
-                   for (const int v : contacts.vertices()) {
-                       const int object = table.object_of(v);
-                       if (number[v] != none) work(blocks.block_of(object), Point{v, object});
-                   }
+                   for (int v = 0; v < table.dynamic_vertices; ++v)
+                       if (const int object = table.object_of(v); number[v] != none)
+                           work(blocks.block_of(object), Point{v, object});
                }};
-    for (int k = 0; k < count(); ++k) number[vertex(k)] = k;
+    range_.assign(table.objects, {0, 0});
+    for (int k = 0; k < count(); ++k) {
+        number[vertex(k)] = k;
+        auto &[first, end] = range_[object(k)];
+        if (end == 0) first = k;
+        end = k + 1;
+    }
     for (Coupling &coupling : couplings_) coupling.point.fill(none);
     for_coupled([&](int k, int i, int v) { couplings_[k].point[i] = number[v]; });
     roles_ = {size_t(count()),
@@ -67,15 +78,6 @@ void Couplings::multiply(View<Vec3> p, View<ContactValue> values, View<unsigned 
         curvatures[k] = 2.0 * side[0].dot(c.products[0]);
     }
     for (size_t k = 0; k < couplings_.size(); ++k) of_clusters[clusters_[couplings_[k].objects[0]]] += curvatures[k];
-}
-
-Vec3 Couplings::product(int point) const {
-    Vec3 product = Vec3::Zero();
-    for (const auto &[coupling, as] : roles_.of(point)) {
-        const Coupling &c = couplings_[coupling];
-        product += c.weight[as] * c.products[as >= c.first];
-    }
-    return product;
 }
 
 } // namespace ringlet

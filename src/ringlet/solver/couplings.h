@@ -18,16 +18,24 @@ public:
     // Of each object the first of its cluster: those that contacts join, directly or by others.
     const std::vector<int> &clusters() const { return clusters_; }
 
-    // Coupled vertices, called points, numbered block by block.
+    // Points, numbered block by block: the coupled vertices of a block whose factor is exact, and all vertices of another.
     int count() const { return int(points_.items().size()); }
     int begin(int block) const { return points_.begin(block); }
     int end(int block) const { return points_.end(block); }
+    std::array<int, 2> of_object(int object) const { return range_[object]; } // its first, and their end
     int vertex(int point) const { return points_.items()[point].vertex; }
     int object(int point) const { return points_.items()[point].object; }
 
     // Computes C p, p being given at the points, for busy objects; adds p · C p to the numbers of their clusters.
     void multiply(View<Vec3> p, View<ContactValue> values, View<unsigned char> busy, std::vector<double> &of_clusters);
-    Vec3 product(int point) const; // C p there
+    Vec3 product(int point) const { // C p there
+        Vec3 product = Vec3::Zero();
+        for (const auto &[coupling, as] : roles_.of(point)) {
+            const Coupling &c = couplings_[coupling];
+            product += c.weight[as] * c.products[as >= c.first];
+        }
+        return product;
+    }
 
     struct Coupling {
         int contact, first;         // vertices of the first side
@@ -48,7 +56,8 @@ private:
     struct Point {
         int vertex, object;
     };
-    Lists<Point> points_; // of blocks
+    Lists<Point> points_;                   // of blocks, by their vertices
+    std::vector<std::array<int, 2>> range_; // of objects
     struct Role {
         int coupling, as;
     };

@@ -4,8 +4,8 @@
 
 #include "ringlet/linear/direct.h"
 #include "ringlet/solver/assembled_matrix.h"
-#include "ringlet/solver/block_iteration.h"
 #include "ringlet/solver/convergence_test.h"
+#include "ringlet/solver/coupled_system.h"
 
 #include <optional>
 #include <stdexcept>
@@ -44,17 +44,11 @@ private:
     System method(System wanted) const;
     static bool solve_whole(const AssembledMatrix &whole, AlignedVector &direction, Result &result);
     Result conjugate_gradient(const LinearSettings &settings, AlignedVector &direction);
-    void first_iterate(AlignedVector &direction);
-    void deflate(const std::vector<unsigned char> &busy);
-    std::vector<double> of_clusters(const std::vector<double> &of_objects) const;
 
     Objective &objective_;
-    CoarseSpace coarse_;
-    IterationState state_;
-    std::vector<std::unique_ptr<BlockIteration>> iterations_; // of the blocks
-    std::vector<int> inexact_;                                // objects
-    std::vector<unsigned char> iterated_;                     // objects that their own factors do not solve alone
-    std::optional<AssembledMatrix> whole_;                    // to be factored directly
+    CoupledSystem coupled_;
+    std::vector<int> inexact_;             // objects
+    std::optional<AssembledMatrix> whole_; // to be factored directly
 };
 
 } // namespace ringlet
