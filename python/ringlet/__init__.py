@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from ringlet.data.explain import explain
     from ringlet.data.groom import Groom
     from ringlet.farm import compare_wedge, wedge, write_wedge_template
-    from ringlet.groom.stack import Memory
+    from ringlet.groom.stages import Memory
     from ringlet.host import serve
     from ringlet.rest.loft import Loft
     from ringlet.shot.cloth import ClothMaterial
@@ -55,7 +55,7 @@ _SLOW = {
     "Groom": "ringlet.data.groom",
     "Loft": "ringlet.rest.loft",
     "Material": "ringlet.shot.material",
-    "Memory": "ringlet.groom.stack",
+    "Memory": "ringlet.groom.stages",
     "Scene": "ringlet.sim.scene",
     "Solver": "ringlet.shot.solver",
     "Strands": "ringlet.sim.strands",

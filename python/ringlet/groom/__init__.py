@@ -16,7 +16,8 @@ from ringlet.groom.presets import PRESETS
 from ringlet.groom.rebind import rebind
 from ringlet.groom.recipe import Recipe, parse_recipe, read_recipe, schema
 from ringlet.groom.several import grooms_of, join_grooms, recipe_of_lock, recipes_of
-from ringlet.groom.stack import Memory, make_groom
+from ringlet.groom.stack import make_groom
+from ringlet.groom.stages import Memory
 
 __all__ = [
     "PRESETS",
