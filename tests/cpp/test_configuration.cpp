@@ -59,17 +59,17 @@ BOOST_AUTO_TEST_CASE(a_limited_path_leads_where_its_move_ends) {
     path.straight[2] = path.straight[5] = -0.05; // both masses down
     path.bend[0] = path.bend[3] = 0.01;          // on parabolas
     const std::vector<unsigned char> none(2, 0);
-    Refinement refinement(*scene.objective);
     SceneReport report;
-    const PlannedMove move =
-        limit_path(*scene.objective, *scene.configuration, x, {true, true, none}, path, refinement, report);
+    const auto [move, moves] = limit_path(*scene.objective, *scene.configuration, x, {true, true, none}, path, report);
     BOOST_TEST(move.to[0].z() > 0.0);
     BOOST_TEST((move.to[1] - Vec3(1.01, 0.0, -0.04)).norm() < 1e-15);
     BOOST_TEST(path.bend[3] == 0.01);
     const double left = move.to[0].x() / 0.01; // of the path of the first, which goes on bending
     BOOST_TEST((left > 0.0 && left < 1.0));
     BOOST_TEST(path.bend[0] > 0.0);
-    BOOST_TEST(!refinement.all_moved_fully());
+    BOOST_TEST(!moves.are_full());
+    BOOST_TEST(moves.fraction[0] < 1.0);
+    BOOST_TEST(moves.fraction[1] == 1.0);
     AlignedVector end = x.copy();
     move_along(*scene.blocks, x, {1.0, 1.0}, path, {1, 1}, end);
     for (const int v : {0, 1}) BOOST_TEST((scene.blocks->position(end, v) - move.to[v]).norm() < 1e-15);

@@ -300,13 +300,12 @@ BOOST_AUTO_TEST_CASE(objects_that_were_limited_but_are_not_stretched_need_no_mor
     Refinement refinement(*scene.objective);
     std::vector<Vec3> now = scene.configuration->positions, wanted = now, to = now;
     wanted[0].x() += 1.0, to[0].x() += 0.1;
-    refinement.add_move(now, wanted, to);
-    BOOST_TEST(!refinement.all_moved_fully());
-    refinement.end_iteration(1e-6);
+    const ObjectMoves limited(*scene.blocks, now, wanted, to);
+    BOOST_TEST(!limited.are_full());
+    refinement.add(limited, 1e-6);
     const std::vector<unsigned char> none(scene.blocks->objects(), 0);
     BOOST_TEST(!refinement.activate_unfinished(*scene.blocks, now, none));
-    refinement.add_move(now, wanted, wanted);
-    BOOST_TEST(refinement.all_moved_fully());
+    BOOST_TEST(ObjectMoves(*scene.blocks, now, wanted, wanted).are_full());
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -18,11 +18,12 @@
 namespace ringlet::RINGLET_SIMD {
 
 struct NewtonSettings {
-    int iterations;                // at most
-    double tolerance;              // a lane has converged when no unknown changes more than this [m]
-    int halvings = 40;             // of a step at most; then the lane stays
-    double fast_contraction = 0.1; // of a direction by the one before: a lane that contracts faster leaves curvature out
+    int iterations;   // at most
+    double tolerance; // a lane has converged when no unknown changes more than this [m]
 };
+
+inline constexpr int newton_halvings = 40;      // of a step at most; then the lane stays
+inline constexpr double fast_contraction = 0.1; // of a direction by the one before; faster, a lane leaves curvature out
 
 template <class T> struct NewtonResult {
     T energy;
@@ -61,7 +62,7 @@ template <class T, class Objective>
             largest = max(largest, abs(memory.direction[i]));
         }
         // Gauss–Newton alone is enough where directions shrink fast.
-        curved = select(largest < settings.fast_contraction * last, T{}, curved);
+        curved = select(largest < fast_contraction * last, T{}, curved);
         last = largest;
         result.residual = select(active > 0.0, largest, result.residual);
         result.iterations += active;
@@ -79,7 +80,7 @@ template <class T, class Objective>
                 break;
             }
             result.cuts += select(converged, T{}, refused);
-            const T shorter = select(converged, T{}, constant<T>(cut < settings.halvings ? 0.5 : 0.0));
+            const T shorter = select(converged, T{}, constant<T>(cut < newton_halvings ? 0.5 : 0.0));
             step *= select(refused > 0.0, shorter, one);
         }
         for (int i = 0; i < size; ++i) x[i] = select(step > 0.0, memory.trial[i], x[i]);

@@ -108,8 +108,7 @@ void move_to_initial_guess(SceneData &scene, const std::vector<unsigned char> &a
             move.to[v] = now[v];
     const std::vector<Vec3> guess = move.to;
     scene.configuration.limit(move, {.whole = false, .few = true}, report);
-    refinement.add_move(now, guess, move.to);
-    refinement.end_iteration(tolerance);
+    refinement.add(ObjectMoves(scene.blocks, now, guess, move.to), tolerance);
     scene.configuration.commit(move.to);
     scene.blocks.scatter(scene.configuration.positions, x);
 }

@@ -5,6 +5,7 @@
 #include "ringlet/solver/configuration.h"
 #include "ringlet/solver/line_search.h"
 #include "ringlet/solver/linear_system.h"
+#include "ringlet/solver/path_limiter.h"
 #include "ringlet/solver/refinement.h"
 
 namespace ringlet {
@@ -27,41 +28,21 @@ public:
                           SceneReport &report);
 
 private:
-    struct Iteration {
-        int number;
-        double damping; // of relative motion, as a part of the stiffness of contacts; falls from iteration to iteration
-        std::vector<unsigned char> converged; // per object: no coordinate of its cluster's direction is above the tolerance
-        // The first of several: most contacts on this path are new, and nothing in the direction knows their energies. Coupled
-        // objects take it without a search, in which a few of these contacts would halve the motion of their whole cluster.
-        bool leads_into_contact;
-        SearchPath path;
-        std::vector<double> step; // per object: the fraction of the direction that is tried
-        // Per object: the search has found no step of descent for its cluster, which takes the direction itself next.
-        std::vector<unsigned char> cautious;
-        PlannedMove move;
-        std::vector<Vec3> full_step; // of the last iteration of all objects: where its search direction leads
-    };
-
     void find_contacts(View<Vec3> start, double damping, SceneReport &report);
-    void stop_converged(double tolerance, Iteration &iteration) const;
-    void solve(const NewtonSettings &settings, const AlignedVector &x, SceneReport &report, Iteration &iteration);
-    void choose_path(const AlignedVector &x, Iteration &iteration) const;
-    LineSearchResult search(const Iteration &iteration, SceneReport &report, AlignedVector &x);
-    void set_full_step(Iteration &iteration) const;
-    void measure_left(View<Vec3> initial, const Iteration &iteration, View<unsigned char> stalled, SceneReport &report) const;
-    void mark_cautious(const LineSearchResult &found, bool extra, Iteration &iteration);
-    std::vector<unsigned char> stalled(double tolerance) const;
-    bool activate_unfinished(double tolerance, Refinement &refinement); // false: nothing is
-    void accept(const LineSearchResult &found, SceneReport &report, Iteration &iteration, AlignedVector &x);
+    void solve(const LinearSettings &settings, const AlignedVector &x, AlignedVector &direction, SceneReport &report);
+    void follow_loads(const AlignedVector &direction);
+    std::vector<double> choose_path(const AlignedVector &x, const std::vector<unsigned char> &cautious, SearchPath &path) const;
+    LineSearchResult search(const SearchPath &path, std::vector<unsigned char> accepted, bool into_contact, AlignedVector &x,
+                            SceneReport &report);
+    void accept(PlannedMove move, const LineSearchResult &found, AlignedVector &x, SceneReport &report);
+    std::vector<Vec3> end_of(const AlignedVector &direction) const;
+    void measure_left(View<Vec3> initial, View<Vec3> full_step, View<unsigned char> stalled, SceneReport &report) const;
 
     VertexTable &table_;
     Objective &objective_;
     LinearSystem &system_;
     Configuration &configuration_;
     ContactStiffness &stiffness_;
-    std::vector<double> largest_;      // per object: largest coordinate of its last search direction [m]
-    std::vector<unsigned char> moved_; // per object: in an iteration of this step
-    std::vector<unsigned char> stuck_; // per object: nothing has helped it to move
 };
 
 } // namespace ringlet

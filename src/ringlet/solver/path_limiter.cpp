@@ -56,8 +56,8 @@ void end_where_limited(const BlockSet &blocks, const VertexTable &table, View<Ve
 
 } // namespace
 
-PlannedMove limit_path(const Objective &objective, Configuration &configuration, const AlignedVector &x,
-                       const PathLimits &limits, SearchPath &path, Refinement &refinement, SceneReport &report) {
+LimitedPath limit_path(const Objective &objective, Configuration &configuration, const AlignedVector &x,
+                       const PathLimits &limits, SearchPath &path, SceneReport &report) {
     const VertexTable &table = objective.table;
     const BlockSet &blocks = objective.blocks;
     const std::vector<int> &cluster = objective.couplings.clusters();
@@ -78,8 +78,8 @@ PlannedMove limit_path(const Objective &objective, Configuration &configuration,
     share_least(cluster, limits.uniform, left);
     for (int object = 0; object < table.objects; ++object) limited[object] = left[object] < 1.0;
     if (std::count(limited.begin(), limited.end(), 1) == 0) { // one pass is enough
-        refinement.add_move(now, wanted, move.to);
-        return move;
+        ObjectMoves moves(blocks, now, wanted, move.to);
+        return {std::move(move), std::move(moves)};
     }
     straighten(blocks, straight, path);
     shorten(blocks, left, path);
@@ -89,10 +89,10 @@ PlannedMove limit_path(const Objective &objective, Configuration &configuration,
     for (int v = 0; v < table.dynamic_vertices; ++v)
         if (table.mesh.moves[v] && limited[table.mesh.object[v]]) changed[v] = 1, move.to[v] = wanted[v];
     configuration.limit_again(move, limits.whole, changed, report);
-    refinement.add_move(now, wanted, move.to);
-    refinement.add_steps(left);
+    ObjectMoves moves(blocks, now, wanted, move.to);
+    moves.shorten(left);
     end_where_limited(blocks, table, now, wanted, move.to, path);
-    return move;
+    return {std::move(move), std::move(moves)};
 }
 
 } // namespace ringlet

@@ -7,39 +7,34 @@
 
 namespace ringlet {
 
-Refinement::Refinement(const Objective &objective)
-    : objective_(objective), length_(objective.table.objects), fraction_(length_.size(), 1.0), limited_(length_.size(), 0) {}
-
-void Refinement::add_move(View<Vec3> now, View<Vec3> wanted, View<Vec3> to) {
-    std::fill(length_.begin(), length_.end(), 0.0);
-    std::fill(fraction_.begin(), fraction_.end(), 1.0);
-    objective_.blocks.for_active_objects([&](const BlockObject &object) {
-        double &longest = length_[object.number], &least = fraction_[object.number];
+ObjectMoves::ObjectMoves(const BlockSet &blocks, View<Vec3> now, View<Vec3> wanted, View<Vec3> to)
+    : length(blocks.objects(), 0.0), fraction(blocks.objects(), 1.0) {
+    blocks.for_active_objects([&](const BlockObject &object) {
+        double &longest = length[object.number], &least = fraction[object.number];
         for (int v = object.first; v < object.end; ++v) {
-            const double length = (wanted[v] - now[v]).norm();
-            longest = std::max(longest, length);
-            if (length > 0.0) least = std::min(least, (to[v] - now[v]).norm() / length);
+            const double of_vertex = (wanted[v] - now[v]).norm();
+            longest = std::max(longest, of_vertex);
+            if (of_vertex > 0.0) least = std::min(least, (to[v] - now[v]).norm() / of_vertex);
         }
     });
 }
 
-void Refinement::add_steps(const std::vector<double> &t) {
-    for (size_t object = 0; object < t.size(); ++object) fraction_[object] *= t[object];
+void ObjectMoves::shorten(const std::vector<double> &t) {
+    for (size_t object = 0; object < t.size(); ++object) fraction[object] *= t[object];
 }
 
-void Refinement::end_iteration(double tolerance) {
+bool ObjectMoves::are_full() const {
+    return std::all_of(fraction.begin(), fraction.end(), [](double t) { return t > 1.0 - solver_settings::move_rounding; });
+}
+
+void Refinement::add(const ObjectMoves &moves, double tolerance) {
     const BlockSet &blocks = objective_.blocks;
     for (int object = 0; object < objective_.table.objects; ++object) {
         if (!blocks.is_active(object)) continue;
-        const double settled = blocks.of_object(object).settled_distance(blocks.lane_of(object));
-        limited_[object] = length_[object] > tolerance &&
-                           (fraction_[object] < solver_settings::full_move || (limited_[object] && length_[object] > settled));
+        const double length = moves.length[object], settled = blocks.of_object(object).settled_distance(blocks.lane_of(object));
+        limited_[object] = length > tolerance &&
+                           (moves.fraction[object] < solver_settings::full_move || (limited_[object] && length > settled));
     }
-}
-
-bool Refinement::all_moved_fully() const {
-    return std::all_of(fraction_.begin(), fraction_.end(),
-                       [](double fraction) { return fraction > 1.0 - solver_settings::move_rounding; });
 }
 
 bool Refinement::activate_unfinished(BlockSet &blocks, View<Vec3> now, const std::vector<unsigned char> &stay) {

@@ -7,16 +7,22 @@
 
 namespace ringlet {
 
-class Refinement {
-public:
-    explicit Refinement(const Objective &objective);
+// How far each object wanted to go in a move, and the least fraction of that which it went.
+struct ObjectMoves {
+    std::vector<double> length, fraction; // [m]; 0 and 1 of those that are not active
 
     // A move from `now` to `wanted` was limited to `to`.
-    void add_move(View<Vec3> now, View<Vec3> wanted, View<Vec3> to);
-    void add_steps(const std::vector<double> &t); // what fraction of its move each object took
-    void end_iteration(double tolerance);         // also after the initial guess
+    ObjectMoves(const BlockSet &blocks, View<Vec3> now, View<Vec3> wanted, View<Vec3> to);
 
-    bool all_moved_fully() const; // in the last move
+    void shorten(const std::vector<double> &t); // to those fractions
+    bool are_full() const;
+};
+
+class Refinement {
+public:
+    explicit Refinement(const Objective &objective) : objective_(objective), limited_(objective.table.objects, 0) {}
+
+    void add(const ObjectMoves &moves, double tolerance); // of each iteration, and of the initial guess
 
     // Activates the objects that were limited and are stretched or that `stay`, those that touch them and so on for some rings,
     // so that there is something to give way. False: there are none.
@@ -24,8 +30,7 @@ public:
 
 private:
     const Objective &objective_;
-    std::vector<double> length_, fraction_; // per object: of its move [m], and the least fraction of it that was taken
-    std::vector<unsigned char> limited_;    // per object
+    std::vector<unsigned char> limited_; // objects
 };
 
 } // namespace ringlet

@@ -21,6 +21,16 @@ void measure_direction(const BlockSet &blocks, AlignedVector &direction, std::ve
     });
 }
 
+std::vector<double> slopes(const BlockSet &blocks, const AlignedVector &direction) {
+    std::vector<double> slope(blocks.objects(), 0.0);
+    blocks.for_active([&](int b) {
+        double of_lanes[max_lanes] = {};
+        lane_dots(blocks[b].gradient(), blocks.of(b, direction), blocks[b].rows(), blocks[b].lanes(), of_lanes);
+        blocks.from_lanes(b, of_lanes, slope);
+    });
+    return slope;
+}
+
 std::vector<double> max_step(const BlockSet &blocks, const AlignedVector &x, const AlignedVector &direction) {
     std::vector<double> steps(blocks.objects(), 1.0);
     blocks.for_active([&](int b) {

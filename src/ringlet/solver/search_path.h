@@ -17,6 +17,9 @@ struct SearchPath {
 // finite, since its system is too ill-conditioned to solve.
 void measure_direction(const BlockSet &blocks, AlignedVector &direction, std::vector<double> &largest);
 
+// Slopes of the objects' energies along a direction [J].
+std::vector<double> slopes(const BlockSet &blocks, const AlignedVector &direction);
+
 // Per object, the largest fraction of its direction that the linearisation at x is good for.
 std::vector<double> max_step(const BlockSet &blocks, const AlignedVector &x, const AlignedVector &direction);
 
