@@ -4,7 +4,7 @@
 #include "ringlet/energy/strand/bend.h"
 #include "ringlet/energy/strand/stretch.h"
 #include "ringlet/energy/strand/twist.h"
-#include "ringlet/strand/continuation.h"
+#include "ringlet/strand/hinge/continuation.h"
 
 #include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>

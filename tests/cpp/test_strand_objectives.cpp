@@ -1,6 +1,6 @@
 // Objectives of whole strands, away from rest, with references of another shape, damping and held vertices. Gradients agree
 // with finite differences in all unknowns, and Hessians are positive definite.
-#include "ringlet/strand/hinge_objective.h"
+#include "ringlet/strand/hinge/objective.h"
 #include "ringlet/strand/rod_objective.h"
 
 #include <Eigen/Dense>
@@ -27,11 +27,10 @@ template <class Objective> struct RandomStrand {
         std::uniform_real_distribution<double> uniform(0.3, 1.2);
         Vec<double> p{};
         for (int i = 0; i < vertices; ++i) {
-            StrandRow<double> &r = rows[i];
+            typename Objective::Row &r = rows[i];
             const bool edge = i + 1 < vertices, corner = edge && i > 0, hinge = i > 0 && i + 2 < vertices;
             r = {};
             r.free = i > 2;
-            r.frame_free = corner && i > 1;
             r.inertia = uniform(random);
             r.inertia_target = random_unit(random);
             r.rest_length = uniform(random);
@@ -39,25 +38,33 @@ template <class Objective> struct RandomStrand {
             r.stretch_stiffness = edge * uniform(random);
             r.bend_stiffness = corner * uniform(random);
             r.twist_stiffness = hinge * uniform(random);
-            r.rest_angle = r.damped_angle = uniform(random);
+            r.rest_angle = uniform(random);
             r.rest_dihedral = uniform(random);
             const Vec<double> damped = 0.1 * random_unit(random);
-            r.damped_curvature1 = damped.x;
-            r.damped_curvature2 = damped.y;
+            if constexpr (Objective::has_frames) {
+                r.frame_free = corner && i > 1;
+                r.damped_curvature1 = damped.x;
+                r.damped_curvature2 = damped.y;
+            } else {
+                r.damped_angle = r.rest_angle;
+                r.fade = 0.7;
+            }
             r.damped_strain = 0.1;
             r.reference.tangent = random_unit(random);
             r.reference.normal = perpendicular(r.reference.tangent);
-            r.reference.fade = 0.7;
             for (int k = 0; k < 3; ++k) x[Objective::dofs * i + k] = p[k];
             if (Objective::dofs == 4) x[4 * i + 3] = 0.3 * uniform(random);
             p = p + 0.8 * random_unit(random);
         }
     }
     std::mt19937 random;
-    std::vector<StrandRow<double>> rows;
-    std::vector<StrandShape<double>> shapes;
+    std::vector<typename Objective::Row> rows;
+    std::vector<typename Objective::Shape> shapes;
     std::vector<double> x;
 };
+
+bool is_free(const RodRow<double> &row, int component) { return (component < 3 ? row.free : row.frame_free) != 0; }
+bool is_free(const HingeRow<double> &row, int) { return row.free != 0; }
 
 Vec<double> position_of(const std::vector<double> &x, int i) { return RodObjective<double>::position(x.data(), i); }
 
@@ -75,7 +82,7 @@ template <class Objective> void derivatives_agree_with_differences() {
         for (const double g : gradient) largest = std::max(largest, std::abs(g));
         for (int k = 0; k < size; ++k) {
             const int vertex = k / Objective::dofs, component = k % Objective::dofs;
-            if (!(component < 3 ? strand.rows[vertex].free : strand.rows[vertex].frame_free)) {
+            if (!is_free(strand.rows[vertex], component)) {
                 BOOST_TEST(gradient[k] == 0);
                 continue;
             }
@@ -107,7 +114,13 @@ template <class Objective> void objectives_may_share_shapes() {
     std::vector<double> strains;
     for (int i = 0; i < vertices; ++i)
         for (const double strain : first.strains(i).values) strains.push_back(strain);
-    for (StrandShape<double> &shape : other.shapes) shape.strain = shape.curvature1 = shape.sigma = 1e9; // of before
+    for (typename Objective::Shape &shape : other.shapes) { // of before
+        shape.strain = 1e9;
+        if constexpr (Objective::has_frames)
+            shape.curvature1 = 1e9;
+        else
+            shape.sigma = 1e9;
+    }
     first.use(other.shapes.data());
     first.evaluate(one.x.data());
     first.assemble(shared.data(), hessian);
@@ -184,7 +197,7 @@ struct RotatingStrand : RandomStrand<RodObjective<double>> {
         const Vec<double> first = position_of(x, 1) - position_of(x, 0), across = cross(first, random_unit(random));
         const Vec<double> omega = (angle / norm(across)) * across;
         for (int i = 0; i < vertices; ++i) {
-            StrandRow<double> &r = rows[i];
+            RodRow<double> &r = rows[i];
             r.free = 1.0;
             r.rest_angle += 0.1; // curved everywhere
             r.frame_free = i > 0 && i + 1 < vertices;
@@ -202,7 +215,7 @@ struct RotatingStrand : RandomStrand<RodObjective<double>> {
 BOOST_AUTO_TEST_CASE(a_rigid_rotation_strains_nothing) {
     for (int seed = 0; seed < 10; ++seed) {
         RotatingStrand strand(seed, 1.2);
-        for (StrandRow<double> &r : strand.rows) r.inertia = 0.0;
+        for (RodRow<double> &r : strand.rows) r.inertia = 0.0;
         RodObjective<double> objective(vertices, strand.rows.data(), strand.shapes.data());
         std::vector<double> to(objective.size()), straight(objective.size());
         objective.curved_path(strand.x.data(), 1.0, strand.direction.data(), to.data());
@@ -228,7 +241,7 @@ BOOST_AUTO_TEST_CASE(with_its_curvature_the_hessian_is_that_along_a_rotation) {
         RotatingStrand strand(seed, 1.0);
         Vec<double> before{};
         for (int i = 0; i < vertices; ++i) {
-            StrandRow<double> &r = strand.rows[i];
+            RodRow<double> &r = strand.rows[i];
             Vec<double> after{};
             if (i + 1 < vertices) {
                 const Vec<double> edge = position_of(strand.x, i + 1) - position_of(strand.x, i);
@@ -322,7 +335,7 @@ BOOST_AUTO_TEST_CASE(a_rotation_of_a_straight_strand_about_its_own_axis_costs_no
     // With a straight rest shape, all frames may rotate together.
     RandomStrand<RodObjective<double>> strand(3);
     for (int i = 0; i < vertices; ++i) {
-        StrandRow<double> &r = strand.rows[i];
+        RodRow<double> &r = strand.rows[i];
         r.free = r.inertia = r.rest_angle = r.rest_dihedral = r.damped_strain = 0;
         r.damped_curvature1 = r.damped_curvature2 = 0;
         r.frame_free = i > 0 && i + 1 < vertices;

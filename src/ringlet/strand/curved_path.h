@@ -21,8 +21,8 @@ template <int dofs, class T> inline Vec<T> position(const T *x, int i) {
 
 // At a held vertex that is no tip the path has missed by `miss`. The edges since the last held vertex, of total rest length
 // `length`, share the correction.
-template <int dofs, class T>
-void close_path(const StrandRow<T> *rows, int held_at, const MaskOf<T> &held, T length, Vec<T> miss, T *to) {
+template <int dofs, class Row, class T>
+void close_path(const Row *rows, int held_at, const MaskOf<T> &held, T length, Vec<T> miss, T *to) {
     if (held_at == 0) return;
     T open = select(held & (rows[held_at - 1].stretch_stiffness > 0.0), length, T{}); // behind the tip nothing is missed
     const Vec<T> correction = (1.0 / select(open > 0.0, open, constant<T>(1.0))) * miss;
@@ -34,7 +34,8 @@ void close_path(const StrandRow<T> *rows, int held_at, const MaskOf<T> &held, T 
 
 // How much of the spin of edge i about itself rotates it: all where its corners are curved at rest, and none where they are
 // straight. There nothing determines the spin, and edges that rotated with it would be led aside by chance.
-template <class T> T rotation_share(const StrandRow<T> *rows, int i) {
+template <class Row> auto rotation_share(const Row *rows, int i) {
+    using T = decltype(rows->free);
     const T angle = (1.0 / strand_settings::curved_angle) * max(abs(rows[i].rest_angle), abs(rows[i + 1].rest_angle));
     return min(angle * angle, constant<T>(1.0));
 }
@@ -48,8 +49,8 @@ template <class T> struct RotatedEdge {
 // A change of the edge and of its frame, as the rotation that it is to first order, applied to both: what rotates rigidly to
 // first order does so exactly. The angle is atan ‖ω‖, as that of a straight path, since directions of radians overshoot. The
 // edge keeps its length; where nothing changes the result is the same to the bit.
-template <int dofs, class T>
-RotatedEdge<T> rotate_edge(const StrandRow<T> &row, T share, Vec<T> edge, T length, Vec<T> change, T frame, T frame_change) {
+template <int dofs, class Row, class T>
+RotatedEdge<T> rotate_edge(const Row &row, T share, Vec<T> edge, T length, Vec<T> change, T frame, T frame_change) {
     const Vec<T> t = (1.0 / length) * edge, sideways = (1.0 / length) * (change - dot(t, change) * t); // ω × t
     T about{};                                                                                         // ω · t
     if constexpr (dofs == 4)
@@ -73,8 +74,8 @@ RotatedEdge<T> rotate_edge(const StrandRow<T> &row, T share, Vec<T> edge, T leng
 // The point `to` of the path from x at the fraction `step` of a direction; x + step · direction to first order.
 // Edges rotate. Their lengths change by the direction's first-order change alone, and the vertices behind shift with their
 // ends.
-template <int dofs, class T>
-void curved_path(int vertices, const StrandRow<T> *rows, const T *x, T step, const T *direction, T *to) {
+template <int dofs, class Row, class T>
+void curved_path(int vertices, const Row *rows, const T *x, T step, const T *direction, T *to) {
     Vec<T> last{}, shift{}; // the vertex before on its straight path; of the vertices behind, from theirs
     T length{};             // at rest, since the last held vertex
     for (int i = 0; i < vertices; ++i) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ringlet/dynamics/newton.h"
+#include "ringlet/strand/hinge/vertex_data.h"
 #include "ringlet/strand/lane_gather.h"
 #include "ringlet/strand/root_motion.h"
 #include "ringlet/strand/vertex_data.h"
@@ -14,20 +15,21 @@ namespace ringlet::RINGLET_SIMD {
 template <class Objective> struct GroupMemory {
     using Matrix = typename Objective::Matrix;
 
-    StrandRow<Pack> *rows;
-    StrandShape<Pack> *shapes;
+    using Row = typename Objective::Row;
+    using Shape = typename Objective::Shape;
+
+    Row *rows;
+    Shape *shapes;
     Vec<Pack> *start, *velocity, *target; // positions and velocities at the start of the step; where held vertices end
     Pack *x;                              // the unknowns
     NewtonMemory<Pack> newton;
 
     static size_t kept_bytes(int vertices) {
         const int unknowns = Objective::dofs * vertices;
-        return vertices * (sizeof(StrandRow<Pack>) + 3 * sizeof(Vec<Pack>)) +
+        return vertices * (sizeof(Row) + 3 * sizeof(Vec<Pack>)) +
                (3 * size_t(unknowns) + Matrix::padding + Matrix::entries(unknowns)) * sizeof(Pack);
     }
-    static size_t scratch_bytes(int vertices) {
-        return vertices * (sizeof(StrandShape<Pack>) + Objective::dofs * sizeof(Pack));
-    }
+    static size_t scratch_bytes(int vertices) { return vertices * (sizeof(Shape) + Objective::dofs * sizeof(Pack)); }
     static size_t bytes(int vertices) { return kept_bytes(vertices) + scratch_bytes(vertices); }
 
     // Without `scratch`, that stands behind what is kept.
@@ -50,30 +52,40 @@ template <class Objective> struct GroupMemory {
     }
 
     void use(void *scratch, int vertices) {
-        shapes = static_cast<StrandShape<Pack> *>(scratch);
+        shapes = static_cast<Shape *>(scratch);
         newton.trial = reinterpret_cast<Pack *>(shapes + vertices);
     }
 };
 
-// Writes the row of vertex i without damping and inertia. In place: a row is large.
-inline void gather_row(const LaneGather &gather, const StrandArrays &arrays, const double *normals, int i,
-                       StrandRow<Pack> &row) {
-    row = StrandRow<Pack>{};
+inline bool is_held(const StrandLane &strand, const StrandArrays &arrays, int i) { // also behind the tip
+    return !strand.has_vertex(i) || arrays.held[strand.row(i)];
+}
+
+// What a row of vertex i has for its model of bend and twist alone.
+inline void gather_model(const LaneGather &gather, const StrandArrays &arrays, int i, RodRow<Pack> &row) {
     for (int k = 0; k < lanes; ++k) {
         const StrandLane &strand = gather.lane(k);
-        const auto is_held = [&](int v) { return !strand.has_vertex(v) || arrays.held[strand.row(v)]; };
-        set_lane(row.free, k, is_held(i) ? 0.0 : 1.0);
-        set_lane(row.frame_free, k, strand.has_corner(i) && !(is_held(i) && is_held(i + 1)) ? 1.0 : 0.0);
+        const bool free = strand.has_corner(i) && !(is_held(strand, arrays, i) && is_held(strand, arrays, i + 1));
+        set_lane(row.frame_free, k, free ? 1.0 : 0.0);
     }
-    for (int c = 0; c < StrandRow<Pack>::column_count; ++c)
-        row.*StrandRow<Pack>::columns[c] = gather.scalar(arrays.*StrandArrays::columns[c], i, 0.0);
+}
+inline void gather_model(const LaneGather &gather, const StrandArrays &arrays, int i, HingeRow<Pack> &row) {
+    row.damped_angle = row.rest_angle;
+    row.reference_delta = gather.scalar(arrays.twist, i, 0.0);
+}
+
+// Writes the row of vertex i without damping and inertia. In place: a row is large.
+template <class Row>
+void gather_row(const LaneGather &gather, const StrandArrays &arrays, const double *normals, int i, Row &row) {
+    row = Row{};
+    for (int k = 0; k < lanes; ++k) set_lane(row.free, k, is_held(gather.lane(k), arrays, i) ? 0.0 : 1.0);
+    for (int c = 0; c < Row::column_count; ++c) row.*Row::columns[c] = gather.scalar(arrays.*StrandArrays::columns[c], i, 0.0);
     for (int k = 0; k < lanes; ++k) // no edge begins at the tip
         if (!gather.lane(k).has_edge(i)) set_lane(row.rest_length, k, 1.0);
     row.damped_length = row.rest_length;
-    row.damped_angle = row.rest_angle;
     row.elastic_share = constant<Pack>(1.0);
-    row.reference.delta = gather.scalar(arrays.twist, i, 0.0);
     row.reference.normal = gather.vector(normals, i);
+    gather_model(gather, arrays, i, row);
 }
 
 template <class Objective> struct GatheredGroup {
@@ -83,7 +95,7 @@ template <class Objective> struct GatheredGroup {
         : arrays(all), step(of_step), gather(all.offsets, group), vertices(gather.vertices()), memory(kept, scratch, vertices),
           objective(vertices, memory.rows, memory.shapes, step.safeguards) {
         for (int i = 0; i < vertices; ++i) {
-            memory.shapes[i] = StrandShape<Pack>{};
+            memory.shapes[i] = typename Objective::Shape{};
             gather_row(gather, arrays, normals(), i, memory.rows[i]);
             memory.start[i] = gather.position(arrays.positions, i);
             memory.velocity[i] = gather.vector(arrays.velocities, i);

@@ -8,14 +8,14 @@
 
 namespace ringlet {
 
-// Model of bend and twist: hinges whose signs and turns follow one of two continuations (strand/continuation.h), or a
+// Model of bend and twist: hinges whose signs and turns follow one of two continuations (strand/hinge/continuation.h), or a
 // material frame, which needs neither (strand/rod_objective.h).
 enum class Continuation { history, least_energy, material_frame };
 
 // See dynamics/time_integrator.h.
 enum class Integrator { backward_euler, bdf2 };
 
-// Safeguards against degenerate virtual triangles (strand/continuation.h); each can be turned off to study it.
+// Safeguards against degenerate virtual triangles (strand/hinge/continuation.h); each can be turned off to study it.
 struct Safeguards {
     bool flip_history = true, winding_number = true, straight_fade = true;
 };

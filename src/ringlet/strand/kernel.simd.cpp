@@ -3,7 +3,7 @@
 
 #include "ringlet/strand/elastic_energy.h"
 #include "ringlet/strand/group.h"
-#include "ringlet/strand/hinge_objective.h"
+#include "ringlet/strand/hinge/objective.h"
 #include "ringlet/strand/rod_objective.h"
 
 #include <new>

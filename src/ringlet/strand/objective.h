@@ -1,33 +1,33 @@
 // Objective of a strand's time step: Σ ½ aᵢ ‖xᵢ − yᵢ‖² (inertia, gravity, mass damping, drag) + stretch + bend + twist.
 // Held vertices are left out. Damping is part of the elastic energies (time_discretisation.h), the time integrator of a and y
-// (dynamics/time_integrator.h). This base class has all but bend and twist; see rod_objective.h and hinge_objective.h.
+// (dynamics/time_integrator.h). This base class has all but bend and twist; see rod_objective.h and hinge/objective.h.
 #pragma once
 
 #include "ringlet/energy/strand/bend.h"
 #include "ringlet/energy/strand/stretch.h"
 #include "ringlet/linear/banded.h"
 #include "ringlet/strand/curved_path.h"
-#include "ringlet/strand/kernel.h"
 #include "ringlet/strand/vertex_data.h"
 
 namespace ringlet::RINGLET_SIMD {
 
 // `dofs_` unknowns per vertex, the first three its position.
-template <class T, int dofs_, int band> class StrandObjective {
+template <class T, int dofs_, int band, class RowOfModel, class ShapeOfModel> class StrandObjective {
 public:
     static constexpr int dofs = dofs_;
     static constexpr bool has_frames = dofs == 4;
     using Matrix = Banded<T, dofs, band>;
+    using Row = RowOfModel;
+    using Shape = ShapeOfModel;
 
-    StrandObjective(int vertices, StrandRow<T> *rows, StrandShape<T> *shapes, Safeguards safeguards = {})
-        : vertices_(vertices), rows_(rows), shapes_(shapes), safeguards_(safeguards) {}
+    StrandObjective(int vertices, Row *rows, Shape *shapes) : vertices_(vertices), rows_(rows), shapes_(shapes) {}
 
     int size() const { return dofs * vertices_; }
 
     // Other memory for shapes. Evaluation sets all of them but for what the ends of a strand lack, which is 0.
-    void use(StrandShape<T> *shapes) {
+    void use(Shape *shapes) {
         shapes_ = shapes;
-        for (const int i : {0, vertices_ - 2, vertices_ - 1}) shapes_[i] = StrandShape<T>{};
+        for (const int i : {0, vertices_ - 2, vertices_ - 1}) shapes_[i] = Shape{};
     }
 
     // Largest step along a direction, at most 1, that changes no edge vector by more than twice its length. Beyond that, as
@@ -96,13 +96,13 @@ protected:
     void begin_vertex(int i, T *gradient, Matrix &hessian) const {
         hessian.set_zero(dofs * i, dofs * (i + 1));
         for (int k = 0; k < dofs; ++k) gradient[dofs * i + k] = T{};
-        const StrandRow<T> &r = rows_[i];
+        const Row &r = rows_[i];
         add(gradient, i, r.inertia * (position(positions_, i) - r.inertia_target));
         add_diagonal(hessian, i, r.free * r.inertia + (1.0 - r.free));
     }
 
     void add_stretch(int i, T *gradient, Matrix &hessian) const {
-        const StrandShape<T> &s = shapes_[i];
+        const Shape &s = shapes_[i];
         const Stretch<T> e = stretch(s.tangent, s.length, rows_[i].damped_length, rows_[i].stretch_stiffness);
         add(gradient, i, -e.gradient);
         add(gradient, i + 1, e.gradient);
@@ -133,9 +133,8 @@ protected:
     bool is_hinge(int i) const { return i > 0 && i + 2 < vertices_; }
 
     int vertices_;
-    StrandRow<T> *rows_;
-    StrandShape<T> *shapes_;
-    Safeguards safeguards_;
+    Row *rows_;
+    Shape *shapes_;
     const T *positions_ = nullptr;
 };
 

@@ -19,7 +19,7 @@ template <class T> struct LoadBehind {
     Vec<T> force{};
     T held{};
 
-    void add(const StrandRow<T> *rows, const T *x, int i, double sign) {
+    void add(const RodRow<T> *rows, const T *x, int i, double sign) {
         const Vec<T> at{x[4 * i], x[4 * i + 1], x[4 * i + 2]};
         force = force + (sign * rows[i].free * rows[i].inertia) * (at - rows[i].inertia_target);
         if (i == 0) return;
@@ -32,7 +32,7 @@ template <class T> struct LoadBehind {
 template <class T> class PathCurvature {
 public:
     // Of what was evaluated at x; `load`: of all vertices.
-    PathCurvature(const StrandRow<T> *rows, const StrandShape<T> *shapes, const T *x, const LoadBehind<T> &load)
+    PathCurvature(const RodRow<T> *rows, const RodShape<T> *shapes, const T *x, const LoadBehind<T> &load)
         : rows_(rows), shapes_(shapes), x_(x), load_(load) {}
 
     // Calls add(column, rows below, value) for edge i, whose director has that spin, and for the corner before it, which has
@@ -55,7 +55,7 @@ private:
     };
 
     EdgeSpin spin_of(int i, Vec<T> director_spin) const {
-        const StrandShape<T> &s = shapes_[i];
+        const RodShape<T> &s = shapes_[i];
         EdgeSpin r;
         const T share = rows_[i].frame_free * rotation_share(rows_, i);
         r.about = share * director_spin;
@@ -71,7 +71,7 @@ private:
     // Across the edge the tension of its load takes the place of that of its stretch where it is larger. An edge that the
     // limiter has left stretched so keeps that stiffness, without which the next iteration stretches it further.
     template <class Add> void add_edge(int i, const EdgeSpin &spin, T weight, const Add &add) const {
-        const StrandShape<T> &s = shapes_[i];
+        const RodShape<T> &s = shapes_[i];
         const Vec<T> load = load_.force;
         const T stretch = stretch_across(s.length, rows_[i].damped_length, rows_[i].stretch_stiffness);
         const T across = weight * max(-dot(load, s.tangent) / s.length - stretch, T{});
@@ -119,8 +119,8 @@ private:
         add(frame, 4, dot(by_frame, second.by_frame));
     }
 
-    const StrandRow<T> *rows_;
-    const StrandShape<T> *shapes_;
+    const RodRow<T> *rows_;
+    const RodShape<T> *shapes_;
     const T *x_;
     LoadBehind<T> load_; // of the present edge
     EdgeSpin before_{};  // of the edge before

@@ -11,13 +11,14 @@
 namespace ringlet::RINGLET_SIMD {
 
 // Degrees of freedom of a vertex: its position and γ l̄ of the edge that begins there [m]. γ is 0 as a step begins.
-template <class T> class RodObjective : public StrandObjective<T, 4, 11> {
-    using Base = StrandObjective<T, 4, 11>;
+template <class T> class RodObjective : public StrandObjective<T, 4, 11, RodRow<T>, RodShape<T>> {
+    using Base = StrandObjective<T, 4, 11, RodRow<T>, RodShape<T>>;
     using Base::rows_, Base::shapes_, Base::vertices_;
 
 public:
-    using Base::Base;
     using typename Base::Matrix;
+
+    RodObjective(int vertices, RodRow<T> *rows, RodShape<T> *shapes, Safeguards = {}) : Base(vertices, rows, shapes) {}
 
     static constexpr double curvature_reserve = 0.1;
 
@@ -84,7 +85,7 @@ public:
     }
 
     Strains<T> strains(int i) const {
-        const StrandShape<T> &s = shapes_[i];
+        const RodShape<T> &s = shapes_[i];
         return {{s.length, s.curvature1, s.curvature2, s.strain}};
     }
 
@@ -114,7 +115,7 @@ private:
     template <bool keeps> T energy_at(const T *x) {
         T energy{};
         LoadBehind<T> load;
-        StrandShape<T> before{}, s{}; // of the edge before; of the edge that begins at i
+        RodShape<T> before{}, s{}; // of the edge before; of the edge that begins at i
         for (int i = 0; i < vertices_; ++i, before = s) {
             energy += this->vertex_energy(x, i);
             if (keeps) load.add(rows_, x, i, 1.0);
@@ -136,7 +137,7 @@ private:
     }
 
     // Always inlined, so that the same products are fused with sums (FMA) wherever it is called from.
-    [[gnu::always_inline]] T corner_energy(const T *x, int i, const StrandShape<T> &before, StrandShape<T> &s) const {
+    [[gnu::always_inline]] T corner_energy(const T *x, int i, const RodShape<T> &before, RodShape<T> &s) const {
         s.corner = corner(before.tangent, s.tangent);
         const Vec<T> director = transport(rows_[i].reference.normal, rows_[i].reference.tangent, s.tangent);
         const SineCosine<T> turn = sine_cosine(x[4 * i + 3] / rows_[i].rest_length);
@@ -148,7 +149,7 @@ private:
         return 0.5 * rows_[i].bend_stiffness * (strain1 * strain1 + strain2 * strain2);
     }
 
-    static void keep(const StrandShape<T> &s, StrandShape<T> &kept) { // without the values of hinges
+    static void keep(const RodShape<T> &s, RodShape<T> &kept) {
         kept.tangent = s.tangent, kept.length = s.length, kept.corner = s.corner;
         kept.director = s.director, kept.curvature1 = s.curvature1, kept.curvature2 = s.curvature2;
     }
@@ -160,7 +161,7 @@ private:
         T moment_of_twist{};
 
         // Moment on the edge before the corner, of bend there and of twist across it [N m].
-        Vec<T> moment(const StrandShape<T> &before) const {
+        Vec<T> moment(const RodShape<T> &before) const {
             return before.length * cross(before.tangent, bending + twisting) - moment_of_twist * before.tangent;
         }
     };
@@ -183,7 +184,7 @@ private:
     }
 
     void add_bend(int i, T *gradient, Matrix &hessian, AddedTerms &terms) const {
-        const StrandShape<T> &before = shapes_[i - 1], &s = shapes_[i];
+        const RodShape<T> &before = shapes_[i - 1], &s = shapes_[i];
         const Vec<T> other = cross(s.tangent, s.director);
         const Vec<T> K = turning(s.corner, before.tangent, s.tangent);
         const T residual[2] = {s.curvature1 - rows_[i].damped_curvature1, s.curvature2 - rows_[i].damped_curvature2};
@@ -209,7 +210,7 @@ private:
     }
 
     void add_twist(int i, T *gradient, Matrix &hessian, AddedTerms &terms) const {
-        const StrandShape<T> &s = shapes_[i], &after = shapes_[i + 1];
+        const RodShape<T> &s = shapes_[i], &after = shapes_[i + 1];
         const EdgeGradient<T> g = frame_twist_gradient(after.corner, s.tangent, after.tangent, s.length, after.length);
         const Vec<T> first = g.first - terms.spin_before, second = g.second + terms.spin;
         const T frame0 = -1.0 / rows_[i].rest_length, frame1 = 1.0 / rows_[i + 1].rest_length;

@@ -12,7 +12,6 @@ inline constexpr double zero_length = 1e-300;  // shorter vectors have no direct
 inline constexpr double shortest_edge = 1e-6;  // shorter edges count as this long, by their rest length
 inline constexpr double curved_angle = 0.06; // from corners of that angle at rest on an edge rotates with all of its spin [rad]
 inline constexpr double rotation_sine = 1e-6; // three held vertices define a rotation from this sine of their angle on
-inline constexpr double normal_sine = 2.6e-3; // hinges: a corner has a normal of its own from this sine on
 
 // In a scene
 inline constexpr double contact_stretch = 0.1;  // of the stretch stiffness, in that against contacts
@@ -25,11 +24,5 @@ inline constexpr double frame_stiffness_min = 1e-15; // and at least by this muc
 inline constexpr int frame_iterations = 100;         // Newton iterations that relax the frames of strands at rest, at most
 inline constexpr double frame_tolerance = 1e-14;     // of that relaxation [m]
 inline constexpr double bent_angle = 1e-6;           // the first director is the corner's normal from this angle on [rad]
-
-// Hinges: corners that are too straight, or folded, to have a plane
-inline constexpr double straight_angle = 0.15 * std::numbers::pi / 180;      // no twist below this angle [rad]
-inline constexpr double straight_fade_angle = 0.30 * std::numbers::pi / 180; // full twist from here on (`history`) [rad]
-inline constexpr double straight_rest_angle = 0.3 * std::numbers::pi / 180;  // no sign below (`least_energy`) [rad]
-inline constexpr double excluded_energy = 1e30;                              // of a sign that may not be chosen [J]
 
 } // namespace ringlet::strand_settings

@@ -51,8 +51,8 @@ template <class Objective> void scatter_motion(const GatheredGroup<Objective> &g
 template <class Objective> void scatter_references(const GatheredGroup<Objective> &group, const StrandLane &strand) {
     for (int i = 1; strand.has_edge(i); ++i) {
         group.scatter_normal(strand, i);
-        if (!Objective::has_frames && strand.has_hinge(i))
-            group.arrays.twist[strand.row(i)] = group.memory.shapes[i].delta[strand.index];
+        if constexpr (!Objective::has_frames)
+            if (strand.has_hinge(i)) group.arrays.twist[strand.row(i)] = group.memory.shapes[i].delta[strand.index];
     }
 }
 

@@ -9,10 +9,8 @@ namespace ringlet::RINGLET_SIMD {
 
 // Reference of the next step: the last accepted state of a vertex and its edge.
 template <class T> struct Reference {
-    Vec<T> normal;  // σ n of the vertex, or (material frames) the director D of the edge
+    Vec<T> normal;  // of the model of bend and twist
     Vec<T> tangent; // of the edge
-    T delta;        // Δφ of the edge, with its turns (`history`)
-    T fade;         // of the twist, 0 … 1 (`history`)
 };
 
 // Strains whose rate Kelvin–Voigt damping resists.
@@ -25,18 +23,15 @@ template <class T> struct Strains {
     T twist() const { return values[3]; }
 };
 
-// Constant during a step. An odd number of values: with a power of two, those of one column share few sets of the cache.
-// `damped_` values are the rest values of the energies with damping (time_discretisation.h).
+// Constant during a step; models of bend and twist add to it. `damped_` values are the rest values of the energies with damping
+// (time_discretisation.h).
 template <class T> struct StrandRow : StrandCoefficients<T> {
     T free;                // 1, or 0 where the vertex is held
     T inertia;             // a of ½ a ‖x − y‖² [kg/s²]
     Vec<T> inertia_target; // y [m]
-    T damped_length, damped_angle, damped_strain;
-    T damped_curvature1, damped_curvature2; // of material frames
-    T elastic_share;                        // 1 / (1 + β/h): of a stiffness with damping, the share without
-    T frame_free;                           // 1, or 0 where both ends of the edge are held and its frame with them
+    T damped_length, damped_strain;
+    T elastic_share; // 1 / (1 + β/h): of a stiffness with damping, the share without
     Reference<T> reference;
-    T start_sigma, start_turns; // at the start of the step, for the report
 
     void scale_stiffnesses(T factor) {
         this->stretch_stiffness *= factor;
@@ -45,22 +40,21 @@ template <class T> struct StrandRow : StrandCoefficients<T> {
     }
 };
 
-// Geometry at the positions evaluated last.
+// Geometry at the positions evaluated last; models of bend and twist add to it.
 template <class T> struct StrandShape {
     Vec<T> tangent; // of the edge
     T length;
     Corner<T> corner;
     T strain; // of the twist, whose energy is ½ k strain²
+};
 
-    // Hinges
-    T sigma;                          // ±1, sign of the corner's bend
-    T phi;                            // dihedral angle of the edge, in (−π, π]
-    T delta;                          // φ − φ̄ of the edge with signs and turns
-    T turns;                          // whole turns in it
-    T by_dihedral, by_angle, by_next; // ∂strain by φ, by the angle at this corner and by that at the next
-    T choice_plus, choice_minus;      // `least_energy`: best sign of the previous corner where this one has + or −
+// Material frames: the normal of the reference is the director D of the edge.
+template <class T> struct RodRow : StrandRow<T> {
+    T damped_curvature1, damped_curvature2;
+    T frame_free; // 1, or 0 where both ends of the edge are held and its frame with them
+};
 
-    // Material frames
+template <class T> struct RodShape : StrandShape<T> {
     Vec<T> director;          // D of the edge
     T curvature1, curvature2; // material curvatures less those at rest: K·D − θ̄ and K·(t×D)
 };

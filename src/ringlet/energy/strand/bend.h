@@ -1,5 +1,5 @@
 // Bending energy at one vertex: E = ½ k (σθ − θ̄)², k = EI / l_v [N m]. Stencil: three vertices (two edges).
-// θ is the turning angle (0 = straight), σ = ±1 its sign (see strand/continuation_*.h).
+// θ is the turning angle (0 = straight), σ = ±1 its sign (see strand/hinge/continuation.h).
 // The eigenvalues of the Hessian in edge space are those of Wu & Kim 2023. Each edge is measured in units of its own length, so
 // that they hold for unequal edges too.
 #pragma once

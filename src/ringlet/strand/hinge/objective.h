@@ -4,31 +4,32 @@
 #pragma once
 
 #include "ringlet/energy/strand/twist.h"
-#include "ringlet/strand/continuation.h"
+#include "ringlet/strand/hinge/continuation.h"
 #include "ringlet/strand/objective.h"
 
 namespace ringlet::RINGLET_SIMD {
 
-template <class T, bool history> class HingeObjective : public StrandObjective<T, 3, 12> {
-    using Base = StrandObjective<T, 3, 12>;
+template <class T, bool history> class HingeObjective : public StrandObjective<T, 3, 12, HingeRow<T>, HingeShape<T>> {
+    using Base = StrandObjective<T, 3, 12, HingeRow<T>, HingeShape<T>>;
     using Base::rows_, Base::shapes_, Base::vertices_;
 
 public:
-    using Base::Base;
     using typename Base::Matrix;
+
+    HingeObjective(int vertices, HingeRow<T> *rows, HingeShape<T> *shapes, Safeguards safeguards = {})
+        : Base(vertices, rows, shapes), safeguards_(safeguards) {}
 
     // Evaluates at the start of the step and keeps its signs, turns and fades.
     T begin(const T *x) {
         const T energy = evaluate(x);
         for (int i = 1; i + 1 < vertices_; ++i) {
-            StrandRow<T> &row = rows_[i];
+            HingeRow<T> &row = rows_[i];
             row.start_sigma = shapes_[i].sigma;
             row.start_turns = shapes_[i].turns;
             if (!this->is_hinge(i) || !history) continue;
-            row.reference.fade = constant<T>(1.0);
-            if (this->safeguards_.straight_fade)
-                row.reference.fade =
-                    straightness_fade(shapes_[i].corner.angle) * straightness_fade(shapes_[i + 1].corner.angle);
+            row.fade = constant<T>(1.0);
+            if (safeguards_.straight_fade)
+                row.fade = straightness_fade(shapes_[i].corner.angle) * straightness_fade(shapes_[i + 1].corner.angle);
         }
         return history ? evaluate(x) : energy; // now with the fades
     }
@@ -40,7 +41,7 @@ public:
         for (int i = 1; i + 2 < vertices_; ++i)
             shapes_[i].phi = dihedral(shapes_[i].corner, shapes_[i + 1].corner, shapes_[i + 1].tangent);
         if constexpr (history)
-            continue_history(vertices_, rows_, shapes_, this->safeguards_);
+            continue_history(vertices_, rows_, shapes_, safeguards_);
         else
             continue_least_energy(vertices_, rows_, shapes_);
 
@@ -68,7 +69,7 @@ public:
     }
 
     Strains<T> strains(int i) const {
-        const StrandShape<T> &s = shapes_[i];
+        const HingeShape<T> &s = shapes_[i];
         return {{s.length, s.sigma * s.corner.angle, T{}, s.strain}};
     }
 
@@ -87,9 +88,9 @@ public:
 
     // Normal that the next step compares with. A nearly straight corner has none of its own and transports its last one.
     Vec<T> reference_normal(int i) const {
-        const StrandShape<T> &s = shapes_[i];
+        const HingeShape<T> &s = shapes_[i];
         const Vec<T> transported = transport(rows_[i].reference.normal, rows_[i].reference.tangent, s.tangent);
-        return select<T>(s.corner.sine > strand_settings::normal_sine, s.sigma * s.corner.normal, transported);
+        return select<T>(s.corner.sine > hinge_settings::normal_sine, s.sigma * s.corner.normal, transported);
     }
 
     T sign_changes(int i) const { return select(shapes_[i].sigma == rows_[i].start_sigma, T{}, constant<T>(1.0)); }
@@ -104,7 +105,7 @@ public:
 
 private:
     void add_bend(int i, T *gradient, Matrix &hessian) const {
-        const StrandShape<T> &before = shapes_[i - 1], &s = shapes_[i];
+        const HingeShape<T> &before = shapes_[i - 1], &s = shapes_[i];
         const Bend<T> e = bend(s.corner, before.tangent, s.tangent, before.length, s.length, s.sigma, rows_[i].damped_angle,
                                rows_[i].bend_stiffness);
         this->add(gradient, i - 1, -e.gradient0);
@@ -121,7 +122,7 @@ private:
 
     // ½ k r² with the Hessian k ∇r∇rᵀ; r depends on the dihedral and, where it fades, on the two corners' angles.
     void add_twist(int i, T *gradient, Matrix &hessian) const {
-        const StrandShape<T> &before = shapes_[i - 1], &s = shapes_[i], &after = shapes_[i + 1];
+        const HingeShape<T> &before = shapes_[i - 1], &s = shapes_[i], &after = shapes_[i + 1];
         const DihedralGradient<T> phi = dihedral_gradient(s.corner, after.corner, before.length, s.length, after.length);
         Vec<T> slope[4];
         for (int k = 0; k < 4; ++k) slope[k] = s.by_dihedral * phi.at[k];
@@ -139,14 +140,16 @@ private:
     }
 
     // Adds weight · ∂θ/∂x of the corner between two edges, at its three vertices.
-    static void add_angle_gradient(Vec<T> *slope, T weight, const Corner<T> &corner, const StrandShape<T> &first,
-                                   const StrandShape<T> &second) {
+    static void add_angle_gradient(Vec<T> *slope, T weight, const Corner<T> &corner, const HingeShape<T> &first,
+                                   const HingeShape<T> &second) {
         const Vec<T> g0 = (-weight / first.length) * cross(corner.normal, first.tangent);
         const Vec<T> g1 = (weight / second.length) * cross(corner.normal, second.tangent);
         slope[0] = slope[0] - g0;
         slope[1] = slope[1] + (g0 - g1);
         slope[2] = slope[2] + g1;
     }
+
+    Safeguards safeguards_;
 };
 
 } // namespace ringlet::RINGLET_SIMD

@@ -3,8 +3,8 @@
 
 #include "ringlet/energy/strand/bend.h"
 #include "ringlet/energy/strand/twist.h"
-#include "ringlet/strand/settings.h"
-#include "ringlet/strand/vertex_data.h"
+#include "ringlet/strand/hinge/settings.h"
+#include "ringlet/strand/hinge/vertex_data.h"
 
 namespace ringlet::RINGLET_SIMD {
 
@@ -28,25 +28,24 @@ template <class T> inline T unwrapped(T last, T delta, T sign_product) {
 // Factor on the twist of an edge with a corner that is nearly straight or folded: 0 below `straight_angle`, then a smooth rise
 // to 1 at `straight_fade_angle`. A hard cut would remove a large stiffness at once.
 template <class T> inline T straightness_fade(T angle) {
-    const double low = strand_settings::straight_angle, high = strand_settings::straight_fade_angle;
+    const double low = hinge_settings::straight_angle, high = hinge_settings::straight_fade_angle;
     const T u = (min(angle, pi - angle) - low) * (1.0 / (high - low));
     const T y = min(max(u, T{}), constant<T>(1.0));
     return y * y * (3.0 - 2.0 * y);
 }
 
-template <class T>
-void continue_history(int vertices, const StrandRow<T> *rows, StrandShape<T> *shapes, Safeguards safeguards) {
+template <class T> void continue_history(int vertices, const HingeRow<T> *rows, HingeShape<T> *shapes, Safeguards safeguards) {
     for (int i = 1; i + 1 < vertices; ++i)
         shapes[i].sigma = safeguards.flip_history
                               ? transported_sign(rows[i].reference, shapes[i].tangent, shapes[i].corner.normal)
                               : constant<T>(1.0);
     for (int i = 1; i + 2 < vertices; ++i) {
-        StrandShape<T> &s = shapes[i];
+        HingeShape<T> &s = shapes[i];
         const T delta = s.phi - rows[i].rest_dihedral;
-        s.delta = unwrapped(safeguards.winding_number ? rows[i].reference.delta : T{}, delta, s.sigma * shapes[i + 1].sigma);
+        s.delta = unwrapped(safeguards.winding_number ? rows[i].reference_delta : T{}, delta, s.sigma * shapes[i + 1].sigma);
         s.turns = round((s.delta - delta) * (0.5 / pi));
-        s.strain = rows[i].reference.fade * s.delta;
-        s.by_dihedral = rows[i].reference.fade;
+        s.strain = rows[i].fade * s.delta;
+        s.by_dihedral = rows[i].fade;
         s.by_angle = s.by_next = T{};
     }
 }
@@ -70,7 +69,7 @@ template <class T> inline WithSlope<T> rounded(T delta) {
 
 // s(θ): 0 where a corner is within `straight_angle` of straight or folded, 1 from half the rest angle on.
 template <class T> inline WithSlope<T> straightness(T angle, T rest_angle) {
-    const double low = strand_settings::straight_angle;
+    const double low = hinge_settings::straight_angle;
     const T high = max(0.5 * min(rest_angle, pi - rest_angle), constant<T>(2 * low));
     const T inverse = 1.0 / (high - low);
     const T y = min(max((min(angle, pi - angle) - low) * inverse, T{}), constant<T>(1.0));
@@ -78,19 +77,19 @@ template <class T> inline WithSlope<T> straightness(T angle, T rest_angle) {
     return {y * (1.5 - 0.5 * y * y), select(angle > pi / 2, -slope, slope)};
 }
 
-template <class T> void continue_least_energy(int vertices, const StrandRow<T> *rows, StrandShape<T> *shapes) {
+template <class T> void continue_least_energy(int vertices, const HingeRow<T> *rows, HingeShape<T> *shapes) {
     const T one = constant<T>(1.0);
     const int last = vertices - 2; // corners are 1 … last
 
     const auto bend_of = [&](int i, double sigma) {
         const T energy = bend_energy(shapes[i].corner.angle, constant<T>(sigma), rows[i].damped_angle, rows[i].bend_stiffness);
         return sigma > 0 ? energy
-                         : select(rows[i].rest_angle < strand_settings::straight_rest_angle,
-                                  constant<T>(strand_settings::excluded_energy), energy);
+                         : select(rows[i].rest_angle < hinge_settings::straight_rest_angle,
+                                  constant<T>(hinge_settings::excluded_energy), energy);
     };
     T plus = bend_of(1, 1), minus = bend_of(1, -1);
     for (int i = 1; i < last; ++i) {
-        StrandShape<T> &s = shapes[i], &next = shapes[i + 1];
+        HingeShape<T> &s = shapes[i], &next = shapes[i + 1];
         const T fade = straightness(s.corner.angle, rows[i].rest_angle).value *
                        straightness(next.corner.angle, rows[i + 1].rest_angle).value;
         const T delta = wrap(s.phi - rows[i].rest_dihedral);
@@ -109,8 +108,8 @@ template <class T> void continue_least_energy(int vertices, const StrandRow<T> *
         shapes[i - 1].sigma = select(shapes[i].sigma > 0.0, shapes[i].choice_plus, shapes[i].choice_minus);
 
     for (int i = 1; i < last; ++i) {
-        StrandShape<T> &s = shapes[i];
-        const StrandShape<T> &next = shapes[i + 1];
+        HingeShape<T> &s = shapes[i];
+        const HingeShape<T> &next = shapes[i + 1];
         const WithSlope<T> a = straightness(s.corner.angle, rows[i].rest_angle),
                            b = straightness(next.corner.angle, rows[i + 1].rest_angle);
         s.delta = wrap(s.phi - rows[i].rest_dihedral + select(s.sigma * next.sigma < 0.0, constant<T>(pi), T{}));
