@@ -37,6 +37,6 @@ def run(samples: str = "12,24,40", reference: int = 512, size: int = 200) -> dic
                 denoiser: round(float(np.sqrt(((picture(int(each), denoiser) - truth) ** 2).mean())), 1)
                 for denoiser in ("none", "oidn")
             }
-            for each in samples.split(",")
+            for each in str(samples).split(",")
         }
     return {"reference": reference, "size": size, "errors": errors}
