@@ -39,6 +39,7 @@ RESULT, CACHE, PLACES = "result.json", "cache.usdc", "places.npy"
 PART = f"{CACHE}.part"
 WRITTEN = ("shot.toml", "groom.usdc", "rest.usdc", CACHE, "hair.usdc", "still.png", PLACES, RESULT, "log.txt")
 HAIRS = 6000  # number of hairs in a picture
+PICTURE = {"width": 420, "height": 470, "samples": 16}
 SERIES = ("wall_ms", "max_stretch")  # statistics of each frame in the result
 
 Progress = Callable[[int, int], None]
@@ -265,5 +266,5 @@ def _draw(folder: Path, groom: Groom, groom_file: Path, cache: Path, frame: int)
     hairs = folder / "hair.usdc"
     fraction = min(1.0, HAIRS / hair_count(groom))
     api.write_hairs(groom_file, hairs, cache=cache, frames=(frame, frame), fraction=fraction, wider=True)
-    api.write_still(hairs, folder / "still.png", frame=frame, width=420, height=470, samples=16)
+    api.write_still(hairs, folder / "still.png", frame=frame, **PICTURE)
     hairs.unlink()
