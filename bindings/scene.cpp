@@ -138,7 +138,7 @@ nb::tuple arrays_of(View<Contact> contacts) {
 } // namespace
 
 void bind_scene(nb::module_ &module) {
-    nb::exception<CoupledError>(module, "CoupledError", PyExc_ValueError);
+    nb::exception<FactorisationError>(module, "FactorisationError", PyExc_RuntimeError);
     nb::class_<SceneContact>(module, "SceneContact", "Contact in a scene (SI units).")
         .def(nb::init<>())
         .def_rw("strand_radius", &SceneContact::strand_radius)

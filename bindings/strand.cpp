@@ -57,8 +57,6 @@ void recall(StrandState &state, const nb::dict &memory) {
 
 void bind_strand(nb::module_ &module) {
     nb::enum_<System>(module, "System", "How the linear system of a step is solved.")
-        .value("automatic", System::automatic)
-        .value("banded", System::banded)
         .value("conjugate_gradient", System::conjugate_gradient)
         .value("direct", System::direct);
 

@@ -197,11 +197,31 @@ BOOST_AUTO_TEST_CASE(damped_pairs_are_contacts_beyond_their_own_activation_dista
     for (const LaggedForce &lagged : contacts.lagged_forces()) BOOST_TEST(lagged.force == 0.0);
 }
 
-BOOST_AUTO_TEST_CASE(banded_refuses_what_contacts_couple) {
-    SpringScene scene = crossing_bars();
+BOOST_AUTO_TEST_CASE(a_direct_solver_that_fails_says_so) {
+    SpringScene scene;
+    scene.add_masses({{0.0, 0.0, 0.0}, {0.01, 0.0, 0.0}}, 1e-4, -1e6); // springs that push
+    scene.finish();
     scene.begin(0.01);
     find_contacts(scene);
-    BOOST_CHECK_THROW(scene.system->assemble(scene.unknowns(), {.system = System::banded}), CoupledError);
+    AlignedVector direction(scene.blocks->size());
+    scene.system->assemble(scene.unknowns(), {.system = System::direct});
+    BOOST_CHECK_THROW(scene.system->solve({.system = System::direct}, direction), FactorisationError);
+}
+
+BOOST_AUTO_TEST_CASE(both_solvers_leave_blocks_where_they_are_that_are_not_active) {
+    SpringScene scene = crossing_bars();
+    scene.begin(0.01, {0.0, 0.0, -9.81});
+    scene.blocks->activate({0, 1, 1, 0});
+    find_contacts(scene);
+    const AlignedVector x = scene.unknowns();
+    AlignedVector iterated(scene.blocks->size()), direct(scene.blocks->size());
+    scene.system->assemble(x, {.tolerance = 1e-12});
+    scene.system->solve({.tolerance = 1e-12}, iterated);
+    scene.system->assemble(x, {.system = System::direct});
+    scene.system->solve({.system = System::direct}, direct);
+    for (size_t i = 0; i < x.size(); ++i) BOOST_TEST(std::abs(iterated[i] - direct[i]) < 1e-12);
+    for (size_t i = 0; i < 6; ++i) BOOST_TEST(direct[i] == 0.0);
+    BOOST_TEST(direct[8] != 0.0);
 }
 
 BOOST_AUTO_TEST_CASE(the_line_search_shortens_a_cluster_and_leaves_the_others_alone) {

@@ -23,6 +23,8 @@ from ringlet.data.toml import to_toml
 from ringlet.io.hair import HEADER
 from ringlet.io.tfx import HEADER as TFX
 from ringlet.shot import parse_shot
+from ringlet.shot.solver import Solver
+from ringlet.sim.core import step_settings
 from ringlet.viewer import protocol
 from ringlet.viewer.display_groom import GroomEvaluator
 from ringlet.viewer.grooming import Grooming
@@ -33,7 +35,7 @@ from settings_walk import add
 from shapes import ball
 
 import ringlet
-from ringlet import Curves, Mesh, io
+from ringlet import Curves, Mesh, _core, io
 from ringlet.groom import make_groom, parse_recipe
 
 RECIPE, SHOT = "small.recipe.toml", "small.shot.toml"
@@ -101,6 +103,21 @@ def shot(text: str) -> Act:
 def moved(text: str) -> Act:
     """Simulates such a shot."""
     return lambda: shots.outcome(_with(shots.BASE, text))
+
+
+def without_factor(system: str) -> Act:
+    """Simulates with this solver where no matrix has a factor, which takes a rare step to reach."""
+
+    def settings(solver: Solver, *step: Any) -> Any:
+        if solver.system == "direct":
+            raise _core.FactorisationError
+        return step_settings(solver, *step)
+
+    def act() -> None:
+        with patch("ringlet.sim.scene.step_settings", settings):
+            moved(shots.CONTACT + f"[solver]\nsystem = '{system}'\n")()
+
+    return act
 
 
 def _with(base: str, text: str) -> str:
@@ -457,9 +474,8 @@ SHOTS = [
         moved(shots.CLOTH + "[[cloth.pin]]\nto = 'floor'\nwithin = 0.5\n")),
     Advice("only 'history' can be without one", shot("[solver]\nsafeguards = []\n"),
         shot("[solver]\ncontinuation = 'history'\nsafeguards = []\n")),
-    Advice("solver.system is 'banded', which solves strands alone",
-        moved(shots.CONTACT + "[solver]\nsystem = 'banded'\n"),
-        moved(shots.CONTACT + "[solver]\nsystem = 'automatic'\n")),
+    Advice("solver.system is 'direct', but the matrix",
+        without_factor("direct"), without_factor("conjugate_gradient")),
     Advice("which needs solver.continuation = 'material_frame'",
         moved("[rest]\nmode = 'equilibrium'\n[solver]\ncontinuation = 'history'\n"),
         moved("[rest]\nmode = 'equilibrium'\n[solver]\ncontinuation = 'material_frame'\n")),

@@ -46,11 +46,10 @@ class Solver(Section):
         description="[m] motion that a frame in contact may miss, by estimate, before the report asks for a look; 5 % "
         "of its motion where that is more",
     )
-    system: Literal["automatic", "banded", "conjugate_gradient", "direct"] = Field(
-        default="automatic",
-        description="how the linear system of locks in contact is solved: each alone (an error where they are "
-        "coupled), together by conjugate gradients, or by factoring the whole; automatic: alone or "
-        "together, as needed",
+    system: Literal["conjugate_gradient", "direct"] = Field(
+        default="conjugate_gradient",
+        description="how the linear system of locks in contact is solved: by conjugate gradients, or by factoring the "
+        "whole, which takes longer",
     )
     linear_tolerance: float = Field(
         default=0.4,

@@ -212,10 +212,10 @@ class Scene:
                 _rows(bodies, now[moving:]),
                 step_settings(solver, dt, gravity, wind),
             )
-        except _core.CoupledError as error:
+        except _core.FactorisationError as error:
             raise UserError(
-                "solver.system is 'banded', which solves strands alone, but something couples them; take 'automatic', "
-                "'conjugate_gradient' or 'direct'"
+                "solver.system is 'direct', but the matrix of a step has no factor in double precision; take "
+                "'conjugate_gradient'"
             ) from error
         report = dict(zip(_core.SCENE_REPORT, totals.tolist(), strict=True))
         return report, dict(zip(_core.REPORT, rows.T, strict=True))

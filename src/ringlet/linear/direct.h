@@ -1,11 +1,21 @@
 // Direct solver for sparse symmetric positive definite systems A x = b: exact and robust, for small or ill-conditioned ones.
 #pragma once
 
-#include "ringlet/linear/factorisation.h"
+#include "ringlet/linear/sparse_matrix.h"
 
+#include <cstdint>
 #include <memory>
 
 namespace ringlet {
+
+// Factorisation of matrices of one pattern: Eigen's, or one that is hooked in (pardiso.h).
+class Factorisation {
+public:
+    virtual ~Factorisation() = default;
+    virtual bool factor(const SparseMatrix &matrix) = 0;               // false if the matrix is not positive definite
+    virtual void solve(View<double> b, std::span<double> x) const = 0; // after factor() has succeeded
+    virtual std::int64_t entries() const = 0;                          // nonzeros of the triangular factor
+};
 
 enum class DirectMethod { automatic, builtin, pardiso }; // automatic: PARDISO if its library is found
 
@@ -30,7 +40,6 @@ public:
 
 private:
     DirectMethod method_;
-    std::shared_ptr<const SparsePattern> pattern_;
     std::unique_ptr<SparseMatrix> matrix_;
     std::unique_ptr<Factorisation> factorisation_;
 };

@@ -44,7 +44,6 @@ public:
     explicit Pardiso(const SparsePattern &pattern)
         : starts_(pattern.starts().begin(), pattern.starts().end()),
           columns_(pattern.columns().begin(), pattern.columns().end()) {
-        if (pattern.half() != Half::upper) throw std::invalid_argument("pardiso: the pattern keeps the lower triangle");
         settings_[0] = 1;                                           // these settings, not the defaults
         settings_[1] = 2;                                           // nested dissection
         settings_[17] = -1;                                         // count the factor's entries

@@ -2,9 +2,8 @@
 // contact. Ringlet is neither built nor shipped with it; the library is opened at run time, when it is first requested.
 #pragma once
 
-#include "ringlet/linear/factorisation.h"
+#include "ringlet/linear/direct.h"
 
-#include <memory>
 #include <string>
 
 namespace ringlet {
@@ -14,7 +13,7 @@ namespace ringlet {
 bool open_pardiso(const std::string &path = {});
 bool pardiso_available(); // open_pardiso() by name
 
-// For a pattern with the upper triangle; requires pardiso_available().
+// Requires pardiso_available().
 std::unique_ptr<Factorisation> make_pardiso(const SparsePattern &pattern);
 
 } // namespace ringlet

@@ -6,8 +6,8 @@
 
 namespace ringlet {
 
-SparsePattern::SparsePattern(int rows, int block, View<int> i, View<int> j, Half half)
-    : block_(block), half_(half), starts_(size_t(rows) + 1, 0), slots_(i.size()) {
+SparsePattern::SparsePattern(int rows, int block, View<int> i, View<int> j)
+    : block_(block), starts_(size_t(rows) + 1, 0), slots_(i.size()) {
     if (rows < 1 || block < 1 || i.size() != j.size()) throw std::invalid_argument("sparse pattern: sizes do not fit");
 
     // Blocks are sorted by row · rows + column. A diagonal block for every row comes first.
@@ -16,7 +16,7 @@ SparsePattern::SparsePattern(int rows, int block, View<int> i, View<int> j, Half
     for (size_t k = 0; k < i.size(); ++k) {
         if (std::min(i[k], j[k]) < 0 || std::max(i[k], j[k]) >= rows)
             throw std::invalid_argument("sparse pattern: a triplet is outside the matrix");
-        slots_[k].transposed = half == Half::upper ? i[k] > j[k] : i[k] < j[k];
+        slots_[k].transposed = i[k] > j[k];
         const int row = slots_[k].transposed ? j[k] : i[k], column = slots_[k].transposed ? i[k] : j[k];
         places[rows + k] = std::int64_t(row) * rows + column;
     }

@@ -1,5 +1,5 @@
-// Symmetric sparse matrix of square blocks. It stores one triangle in block CSR, with all diagonal blocks and sorted columns.
-// Matrices can share a sparsity pattern.
+// Symmetric sparse matrix of square blocks. It stores the upper triangle in block CSR, with all diagonal blocks and sorted
+// columns. Matrices can share a sparsity pattern.
 #pragma once
 
 #include "ringlet/math/types.h"
@@ -9,21 +9,18 @@
 
 namespace ringlet {
 
-enum class Half { upper, lower };
-
 // Sparsity pattern of triplets (i, j) of block rows and columns, in any order; they may repeat. An off-diagonal triplet also
 // stands for its transpose.
 class SparsePattern {
 public:
     // Throws std::invalid_argument if a triplet is outside the matrix.
-    SparsePattern(int rows, int block, View<int> i, View<int> j, Half half = Half::upper);
+    SparsePattern(int rows, int block, View<int> i, View<int> j);
 
     int rows() const { return int(starts_.size()) - 1; }         // of blocks
     int block() const { return block_; }                         // rows of one block: 1, 3 or 4
     int size() const { return rows() * block_; }                 // scalar rows
     size_t values() const { return columns_.size() * square(); } // stored scalars of a matrix
     size_t square() const { return size_t(block_) * block_; }
-    Half half() const { return half_; }
     const std::vector<int> &starts() const { return starts_; }   // of each block row in columns; rows + 1
     const std::vector<int> &columns() const { return columns_; } // of each block
 
@@ -36,7 +33,6 @@ public:
 
 private:
     int block_;
-    Half half_;
     std::vector<int> starts_, columns_;
     std::vector<Slot> slots_;
 };

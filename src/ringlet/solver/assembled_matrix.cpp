@@ -7,9 +7,20 @@ namespace ringlet {
 AssembledMatrix::AssembledMatrix(const Objective &objective) : objective_(objective) {
     const BlockSet &blocks = objective.blocks;
     for (int b = 0; b < blocks.count(); ++b) block_ = std::max(block_, blocks[b].dofs());
-    for (int b = 0; b < blocks.count(); ++b) blocks[b].add_to(*this);
-    const std::vector<Contact> &contacts = objective.contacts.contacts();
-    for (size_t k = 0; k < contacts.size(); ++k) add_couplings(contacts[k], objective.contact_values()[k].hessian);
+    const std::vector<unsigned char> active = blocks.blocks_with(blocks.active_objects());
+    for (int b = 0; b < blocks.count(); ++b) {
+        if (active[b]) {
+            blocks[b].add_to(*this);
+            continue;
+        }
+        for (const BlockObject &object : blocks[b].objects())
+            for (int v = object.first; v < object.end; ++v) {
+                double *const unit = add_block(v, v);
+                for (int k = 0; k < block_; ++k) unit[k * block_ + k] = 1.0;
+            }
+    }
+    for (const Couplings::Coupling &coupling : objective.couplings.all())
+        add_couplings(objective.contacts.contacts()[coupling.contact], objective.contact_values()[coupling.contact].hessian);
 }
 
 double *AssembledMatrix::add_block(int row, int column) {
@@ -48,7 +59,10 @@ template <class Work> void AssembledMatrix::for_unknowns(const Work &work) const
 std::vector<double> AssembledMatrix::right_hand_side() const {
     const BlockSet &blocks = objective_.blocks;
     std::vector<double> b(size(), 0.0);
-    for_unknowns([&](int row, size_t i, int block) { b[row] = -blocks[block].gradient()[i - blocks.begin(block)]; });
+    const std::vector<unsigned char> active = blocks.blocks_with(blocks.active_objects());
+    for_unknowns([&](int row, size_t i, int block) {
+        if (active[block]) b[row] = -blocks[block].gradient()[i - blocks.begin(block)];
+    });
     return b;
 }
 

@@ -10,7 +10,7 @@ namespace ringlet {
 
 class AssembledMatrix final : public MatrixAssembly {
 public:
-    // Of an assembled objective whose blocks are not factored yet.
+    // Of an assembled objective whose blocks are not factored yet. Blocks that are not active stay where they are.
     explicit AssembledMatrix(const Objective &objective);
 
     int size() const { return vertices() * block_; }

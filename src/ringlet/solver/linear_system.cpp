@@ -19,44 +19,36 @@ LinearSystem::LinearSystem(Objective &objective) : objective_(objective), couple
             for (const BlockObject &object : objective.blocks[b].objects()) inexact_.push_back(object.number);
 }
 
-System LinearSystem::method(System wanted) const {
-    if (wanted == System::banded && objective_.is_coupled())
-        throw CoupledError("scene: the system 'banded' solves strands alone, but something couples them");
-    // The matrix of blocks that are not active is not assembled.
-    return wanted == System::direct && objective_.blocks.all_active() ? wanted : System::conjugate_gradient;
-}
-
 void LinearSystem::assemble(const AlignedVector &x, const LinearSettings &settings) {
-    const System how = method(settings.system);
     objective_.linearise_contacts(x);
     whole_.reset();
-    if (how == System::direct) { // before the blocks are factored in place
+    if (settings.system == System::direct) {
         objective_.blocks.for_active([&](int b) { objective_.assemble(b, x); });
         whole_.emplace(objective_);
+        return;
     }
     coupled_.begin();
     objective_.blocks.for_active([&](int b) { // all of a block while it is in the cache
-        if (!whole_) objective_.assemble(b, x);
+        objective_.assemble(b, x);
         coupled_.begin_block(b);
     });
     coupled_.factor_coarse();
 }
 
 LinearSystem::Result LinearSystem::solve(const LinearSettings &settings, AlignedVector &direction) {
-    Result result;
     direction.fill(0.0); // of blocks that are not active
-    if (whole_ && whole_->size() > 0 && solve_whole(*whole_, direction, result)) return result;
-    return conjugate_gradient(settings, direction);
+    return whole_ ? factor_whole(direction) : conjugate_gradient(settings, direction);
 }
 
-bool LinearSystem::solve_whole(const AssembledMatrix &whole, AlignedVector &direction, Result &result) {
+LinearSystem::Result LinearSystem::factor_whole(AlignedVector &direction) const {
+    if (whole_->size() == 0) return {};
     DirectSolver solver;
-    solver.analyse(whole.pattern());
-    if (!solver.factor(whole.triplets())) return false;
-    std::vector<double> solution(whole.size());
-    result.residual = solver.solve(whole.right_hand_side(), solution);
-    whole.set(solution, direction);
-    return true;
+    solver.analyse(whole_->pattern());
+    if (!solver.factor(whole_->triplets())) throw FactorisationError("scene: the matrix of a step is not positive definite");
+    std::vector<double> solution(whole_->size());
+    const double residual = solver.solve(whole_->right_hand_side(), solution);
+    whole_->set(solution, direction);
+    return {0, residual};
 }
 
 LinearSystem::Result LinearSystem::conjugate_gradient(const LinearSettings &settings, AlignedVector &direction) {

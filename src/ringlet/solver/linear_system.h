@@ -12,17 +12,17 @@
 
 namespace ringlet {
 
-// How the system is solved. Automatic: by the blocks' own factors where nothing couples them, else by conjugate gradients,
-// which took less time than factoring at every size that was measured.
-enum class System { automatic, banded, conjugate_gradient, direct };
+// How the system is solved. Conjugate gradients need no iteration where nothing couples the blocks, and took less time than
+// factoring at every size that was measured.
+enum class System { conjugate_gradient, direct };
 
-// `banded` solves each strand alone, but something couples them.
-struct CoupledError : std::invalid_argument {
-    using std::invalid_argument::invalid_argument;
+// The whole matrix has no factor in double precision.
+struct FactorisationError : std::runtime_error {
+    using std::runtime_error::runtime_error;
 };
 
 struct LinearSettings {
-    System system = System::automatic;
+    System system = System::conjugate_gradient;
     double tolerance = 0.4;                                      // of the error, relative, in the norm of energy
     int max_iterations = solver_settings::max_linear_iterations; // of conjugate gradients
 };
@@ -36,13 +36,13 @@ public:
 
     explicit LinearSystem(Objective &objective);
 
-    // Assembles gradient and Hessian at x and factors the blocks. Throws a CoupledError where `banded` will not do.
+    // Assembles gradient and Hessian at x.
     void assemble(const AlignedVector &x, const LinearSettings &settings);
+    // Throws a FactorisationError where a direct solver fails.
     Result solve(const LinearSettings &settings, AlignedVector &direction);
 
 private:
-    System method(System wanted) const;
-    static bool solve_whole(const AssembledMatrix &whole, AlignedVector &direction, Result &result);
+    Result factor_whole(AlignedVector &direction) const;
     Result conjugate_gradient(const LinearSettings &settings, AlignedVector &direction);
 
     Objective &objective_;

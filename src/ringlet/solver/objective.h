@@ -36,7 +36,6 @@ public:
 
     // Objects that a factor of their own solves: exact blocks that nothing couples.
     bool is_alone(int object) const { return blocks.of_object(object).is_exact() && !couplings.couples(object); }
-    bool is_coupled() const { return !blocks.all_exact() || couplings.count() > 0; }
 
     // Energies [J] of the objects, in one of the models of contact_energy.h. Those at the linearisation come first after
     // contacts were found and the system assembled; later only objects that have `changed` since are evaluated.
