@@ -18,6 +18,12 @@ Solid::Solid(const TriangleMesh &mesh)
     find_edges();
 }
 
+std::shared_ptr<const ProximityGrid> Solid::cells_within(double distance) const {
+    const std::lock_guard lock(grid_in_use_);
+    if (!grid_ || grid_->distance() != distance) grid_ = std::make_shared<const ProximityGrid>(mesh_, distance);
+    return grid_;
+}
+
 void Solid::find_edges() {
     struct Side {
         int low, high, triangle, k;

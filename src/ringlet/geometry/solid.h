@@ -1,8 +1,11 @@
 // Signed distance to a triangle mesh, negative inside.
 #pragma once
 
+#include "ringlet/geometry/proximity_grid.h"
 #include "ringlet/geometry/triangle_tree.h"
 
+#include <memory>
+#include <mutex>
 #include <vector>
 
 namespace ringlet {
@@ -29,6 +32,9 @@ public:
                                    int hint = -1) const;
     const TriangleMesh &mesh() const { return mesh_; }
 
+    // The cells within a distance of the surface. The last grid is kept: curves are held out of one body again and again.
+    std::shared_ptr<const ProximityGrid> cells_within(double distance) const;
+
 private:
     // Pseudonormals of one triangle; edge k is opposite corner k.
     struct Normals {
@@ -44,6 +50,8 @@ private:
     std::vector<Normals> normals_;
     std::vector<Vec3> corners_; // pseudonormals of the points
     std::vector<char> open_;    // whether a point is on the rim
+    mutable std::mutex grid_in_use_;
+    mutable std::shared_ptr<const ProximityGrid> grid_;
 };
 
 } // namespace ringlet

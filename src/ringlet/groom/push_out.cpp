@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 namespace ringlet {
 namespace {
@@ -46,20 +47,20 @@ class Bodies {
 public:
     Bodies(View<const Solid *> bodies, double reach) : bodies_(bodies) {
         grids_.reserve(bodies.size());
-        for (const Solid *body : bodies) grids_.emplace_back(body->mesh(), reach);
+        for (const Solid *body : bodies) grids_.push_back(body->cells_within(reach));
     }
 
     // One probe for each body, for a curve from a root.
     std::vector<SurfaceProbe> probes(const Vec3 &root) const {
         std::vector<SurfaceProbe> result;
         result.reserve(grids_.size());
-        for (size_t k = 0; k < grids_.size(); ++k) result.emplace_back(*bodies_[k], grids_[k], root);
+        for (size_t k = 0; k < grids_.size(); ++k) result.emplace_back(*bodies_[k], *grids_[k], root);
         return result;
     }
 
 private:
     View<const Solid *> bodies_;
-    std::vector<ProximityGrid> grids_;
+    std::vector<std::shared_ptr<const ProximityGrid>> grids_;
 };
 
 // Whether the signed distance of a place to the union of bodies is below `most` [m]; then `above` is that to the body in which

@@ -83,13 +83,13 @@ std::vector<Penetration> find_penetrations(const CurveView &curves, const std::v
     std::vector<Penetration> result;
     const auto floor = [&](double along) { return -allowed_depth(allowed, along) - rounding; };
     for (size_t body = 0; body < bodies.size(); ++body) {
-        const ProximityGrid grid(bodies[body]->mesh(), least_probe_distance);
+        const std::shared_ptr<const ProximityGrid> grid = bodies[body]->cells_within(least_probe_distance);
 #pragma omp parallel
         {
             std::vector<Penetration> found;
 #pragma omp for schedule(dynamic, 16) nowait
             for (int i = 0; i < curves.count(); ++i)
-                find_below(curves[i], *bodies[body], grid, 0.0, floor,
+                find_below(curves[i], *bodies[body], *grid, 0.0, floor,
                            [&](size_t k, double, double along, const Vec3 &place, const SignedDistance &above) {
                                const int point = curves.offsets[i] + static_cast<int>(k);
                                const Penetration here{static_cast<int>(body), point, above.triangle, place,
@@ -119,7 +119,7 @@ Repair::Repair(const CurveView &curves, std::vector<const Solid *> bodies, const
     : offsets_(curves.offsets.begin(), curves.offsets.end()), bodies_(std::move(bodies)), allowed_(allowed),
       before_(curves.points.begin(), curves.points.end()), points_(before_), best_(before_),
       fewest_(std::numeric_limits<size_t>::max()), target_(points_.size()), weight_(points_.size()) {
-    for (const Solid *body : bodies_) grids_.emplace_back(body->mesh(), least_probe_distance);
+    for (const Solid *body : bodies_) grids_.push_back(body->cells_within(least_probe_distance));
     points_ = push_out(this->curves(), bodies_, body_clearance, allowed_);
 }
 
@@ -177,7 +177,7 @@ int Repair::push_out_of_bodies() {
     for (size_t body = 0; body < bodies_.size(); ++body)
 #pragma omp parallel for schedule(dynamic, 16) reduction(+ : violations)
         for (int i = 0; i < curves().count(); ++i)
-            find_below(curves()[i], *bodies_[body], grids_[body], 0.5 * body_clearance, floor,
+            find_below(curves()[i], *bodies_[body], *grids_[body], 0.5 * body_clearance, floor,
                        [&](size_t k, double at, double along, const Vec3 &place, const SignedDistance &above) {
                            violations += above.distance < -allowed_depth(allowed_, along) - rounding;
                            const Vec3 move = above.closest + goal(along) * above.normal - place;

@@ -5,6 +5,7 @@
 #include "ringlet/groom/places.h"
 
 #include <array>
+#include <memory>
 #include <vector>
 
 namespace ringlet {
@@ -50,7 +51,7 @@ private:
 
     std::vector<int> offsets_;
     std::vector<const Solid *> bodies_;
-    std::vector<ProximityGrid> grids_; // of each body
+    std::vector<std::shared_ptr<const ProximityGrid>> grids_; // of each body
     Allowed allowed_;
     std::vector<Vec3> before_, points_, best_;
     size_t fewest_;
