@@ -1,6 +1,7 @@
 """The command ``loft``, its file, and when the file is stale."""
 
 import json
+from functools import partial
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from small_example import write_example
 from typer.testing import CliRunner
 
 import ringlet
+from ringlet import picture
 
 LOFTED = "\n[rest]\nmode = 'lofted'\niterations = 6\n"
 
@@ -57,7 +59,8 @@ def test_an_unused_rest_shape_is_reported(folder, mode, used):
     assert result.exit_code == 0 and ("does not use this shape" in result.stdout) is not used
 
 
-def test_the_report_compares_the_sag_with_and_without_loft(folder):
+def test_the_report_compares_the_sag_with_and_without_loft(folder, monkeypatch):
+    monkeypatch.setattr(picture, "compare", partial(picture.compare, tile=(140, 160), samples=2))
     result = run("loft", folder / "small.shot.toml", "-o", folder / "a.usdc", "--json", "--report", folder / "out")
     output = json.loads(result.stdout)
     assert output["locks"] == 8 and output["lost"]["away"]["with mean"] < output["lost"]["away"]["without mean"]
