@@ -39,7 +39,7 @@ RESULT, CACHE, PLACES = "result.json", "cache.usdc", "places.npy"
 PART = f"{CACHE}.part"
 WRITTEN = ("shot.toml", "groom.usdc", "rest.usdc", CACHE, "hair.usdc", "still.png", PLACES, RESULT, "log.txt")
 HAIRS = 6000  # number of hairs in a picture
-PICTURE = {"width": 420, "height": 470, "samples": 16}
+PICTURE: dict[str, Any] = {"width": 420, "height": 470, "samples": 16}
 SERIES = ("wall_ms", "max_stretch")  # statistics of each frame in the result
 
 Progress = Callable[[int, int], None]
