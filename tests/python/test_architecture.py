@@ -77,8 +77,9 @@ def test_allowed_imports_are_not_reported(problems, tmp_path):
 
 def test_what_a_test_is_skipped_without_is_a_module_of_a_declared_dependency():
     """A test that asks for a module which no dependency brings is skipped for ever."""
-    extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
-    declared = {re.split(r"[^\w.-]", one)[0].lower() for every in extras.values() for one in every}
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    every = [project["dependencies"], *project["optional-dependencies"].values()]
+    declared = {re.split(r"[^\w.-]", one)[0].lower() for some in every for one in some}
     texts = [path.read_text() for path in (ROOT / "tests").rglob("*.py")]
     asked = {name for text in texts for name in re.findall(r'(?:importorskip|find_spec)\("(\w+)', text)}
     brought = packages_distributions()
