@@ -37,17 +37,17 @@ void LinearSystem::assemble(const AlignedVector &x, const LinearSettings &settin
 
 LinearSystem::Result LinearSystem::solve(const LinearSettings &settings, AlignedVector &direction) {
     direction.fill(0.0); // of blocks that are not active
-    return whole_ ? factor_whole(direction) : conjugate_gradient(settings, direction);
+    return whole_ ? factor(*whole_, direction) : conjugate_gradient(settings, direction);
 }
 
-LinearSystem::Result LinearSystem::factor_whole(AlignedVector &direction) const {
-    if (whole_->size() == 0) return {};
+LinearSystem::Result LinearSystem::factor(const AssembledMatrix &whole, AlignedVector &direction) {
+    if (whole.size() == 0) return {};
     DirectSolver solver;
-    solver.analyse(whole_->pattern());
-    if (!solver.factor(whole_->triplets())) throw FactorisationError("scene: the matrix of a step is not positive definite");
-    std::vector<double> solution(whole_->size());
-    const double residual = solver.solve(whole_->right_hand_side(), solution);
-    whole_->set(solution, direction);
+    solver.analyse(whole.pattern());
+    if (!solver.factor(whole.triplets())) throw FactorisationError("scene: the matrix of a step is not positive definite");
+    std::vector<double> solution(whole.size());
+    const double residual = solver.solve(whole.right_hand_side(), solution);
+    whole.set(solution, direction);
     return {0, residual};
 }
 

@@ -42,7 +42,7 @@ public:
     Result solve(const LinearSettings &settings, AlignedVector &direction);
 
 private:
-    Result factor_whole(AlignedVector &direction) const;
+    static Result factor(const AssembledMatrix &whole, AlignedVector &direction);
     Result conjugate_gradient(const LinearSettings &settings, AlignedVector &direction);
 
     Objective &objective_;
