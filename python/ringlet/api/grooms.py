@@ -104,15 +104,11 @@ def groom_inputs(recipe: Recipe, memory: Memory | None = None, notes: list[str] 
         raise UserError(f"{where}: scalp.file is {recipe.scalp_file}, but there is no such file; check the name")
     chosen = recipe.scalp
     cage = chosen.surface == "cage"
-    scalp, meshes_of_head, space = _cached(
+    scalp, others, space = _cached(
         memory,
         recipe.scalp_file,
         f"{chosen.mesh} {chosen.surface} {chosen.space}",
-        lambda file: (
-            io.read_mesh(file, chosen.mesh, space=chosen.space, cage=cage, notes=notes),
-            _meshes(file, cage),
-            io.read_space(file, space=chosen.space),
-        ),
+        partial(io.read_head, prim=chosen.mesh, space=chosen.space, cage=cage, notes=notes),
     )
     hidden = _hidden(recipe)
     textures = {name: _cached(memory, file, "texture", io.read_texture) for name, file in recipe.map_files().items()}
@@ -141,7 +137,7 @@ def groom_inputs(recipe: Recipe, memory: Memory | None = None, notes: list[str] 
         "helpers": helpers,
         "hidden": hidden,
         "meshes": meshes,
-        "colliders": [mesh for mesh in meshes_of_head if mesh.name != scalp.name and shows(mesh.name, hidden)],
+        "colliders": [mesh for mesh in others if shows(mesh.name, hidden)],
         "scalp_file": recipe.scalp_file,
         "scalp_prim": recipe.scalp.mesh,
         "space": space,
@@ -340,13 +336,9 @@ def check_groom(
 
 
 def _beside_scalp(groom: Groom) -> list[Mesh]:
-    """The visible meshes in the file of the scalp, but for the scalp."""
-    meshes = _meshes(groom.scalp_file, groom.cage) if groom.scalp_file else []
-    return [mesh for mesh in meshes if mesh.name != groom.scalp.name and groom.shows(mesh.name)]
-
-
-def _meshes(head: Path, cage: bool) -> list[Mesh]:
-    """The visible meshes in the file of a head; none in an OBJ."""
+    """The visible meshes in the file of the scalp, but for the scalp; none beside an OBJ."""
     from ringlet import io
 
-    return [] if head.suffix == ".obj" else io.read_meshes(head, cage)
+    file = groom.scalp_file
+    meshes = [] if file is None or file.suffix == ".obj" else io.read_meshes(file, groom.cage)
+    return [mesh for mesh in meshes if mesh.name != groom.scalp.name and groom.shows(mesh.name)]

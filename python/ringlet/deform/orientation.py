@@ -33,5 +33,9 @@ def facing_inside(points: NDArray, triangles: NDArray, head: NDArray | None = No
 
 def outward(points: NDArray, triangles: NDArray, head: NDArray | None = None) -> NDArray[np.int32]:
     """Triangles with those that face the inside turned over, contiguous, shape (m, 3); see ``facing_inside``."""
-    turned = facing_inside(points, triangles, head)[:, None]
-    return np.ascontiguousarray(np.where(turned, triangles[:, ::-1], triangles), np.int32)
+    return turned(triangles, facing_inside(points, triangles, head))
+
+
+def turned(triangles: NDArray, mask: NDArray[np.bool_]) -> NDArray[np.int32]:
+    """Triangles with those of a mask turned over, contiguous, shape (m, 3)."""
+    return np.ascontiguousarray(np.where(mask[:, None], triangles[:, ::-1], triangles), np.int32)

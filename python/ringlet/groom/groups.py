@@ -36,11 +36,11 @@ def leaders(
     what:   setting that gives the distance, for messages
     """
     roots, lean = shapes[:, 0], unit(shapes[:, shapes.shape[1] // 3] - shapes[:, 0])
-    own = np.arange(len(roots))
-    if len(roots) == 1 or 2.0 * size < np.median(KDTree(roots).query(roots, k=2)[0][:, 1]):
+    own, tree = np.arange(len(roots)), KDTree(roots)
+    if len(roots) == 1 or 2.0 * size < np.median(tree.query(roots, k=2)[0][:, 1]):
         return own
     _, triangle, barycentric = scalp.sample(scalp.count_for_spacing(size, what), seed)
-    leading = np.unique(KDTree(roots).query(scalp.positions(triangle, barycentric))[1])
+    leading = np.unique(tree.query(scalp.positions(triangle, barycentric))[1])
     _, choice = KDTree(roots[leading]).query(roots, k=min(CHOICE, len(leading)))
     near = leading[choice].reshape(len(roots), -1)
     alike = np.einsum("lkx,lx->lk", lean[near], lean) >= np.cos(np.radians(apart))

@@ -15,7 +15,7 @@ from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
 from ringlet.data.painted import painted
 from ringlet.data.random import Random
-from ringlet.deform.orientation import facing_inside, outward
+from ringlet.deform.orientation import facing_inside, outward, turned
 
 IDS_PER_TRIANGLE = 1_000_000  # id of a grown curve: triangle · 1 000 000 + number in the triangle
 
@@ -48,7 +48,12 @@ class Scalp:
     @cached_property
     def solid(self) -> _core.Solid:
         """The mesh as a solid for distance queries."""
-        return _core.Solid(self.points, outward(self.points, self.triangles))
+        return _core.Solid(self.points, turned(self.triangles, self.facing_inside))
+
+    @cached_property
+    def facing_inside(self) -> NDArray[np.bool_]:
+        """Mask of the triangles of the mesh that face its inside."""
+        return facing_inside(self.points, self.triangles)
 
     @cached_property
     def bodies(self) -> list[_core.Solid]:
@@ -319,7 +324,7 @@ def _check_region(scalp: Scalp) -> None:
     sides = np.sort(start * len(scalp.points) + end)
     if (sides[1:] == sides[:-1]).any():
         raise UserError(f"{scalp.where}: neighbouring faces have opposite orientations; make their normals agree")
-    if count := int(facing_inside(scalp.points, scalp.triangles)[scalp.region].sum()):
+    if count := int(scalp.facing_inside[scalp.region].sum()):
         raise UserError(
             f"{scalp.where}: {count} of {len(scalp.region)} triangles face the inside of the mesh, where their hair "
             "would grow; turn the normals outwards"

@@ -1,7 +1,7 @@
 """Reads and writes USD, Alembic, .hair, TressFX .tfx and polylines of OBJ; reads meshes from OBJ."""
 
 from ringlet.io.formats import format_of, open_scene, write_scene
-from ringlet.io.read import read_clip, read_curves, read_mesh, read_space
+from ringlet.io.read import read_clip, read_curves, read_head, read_mesh, read_space
 from ringlet.io.texture import read_texture
 from ringlet.io.usd.cache import CacheFile, CacheWriter, cache_groom_path, is_cache, open_cache, read_cache, write_cache
 from ringlet.io.usd.camera import camera_paths, read_camera
@@ -54,6 +54,7 @@ __all__ = [
     "read_groom",
     "read_hair_frames",
     "read_hairs",
+    "read_head",
     "read_mesh",
     "read_meshes",
     "read_offsets",

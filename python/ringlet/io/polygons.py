@@ -52,7 +52,8 @@ def triangulate(
     step = np.arange(len(faces)) - cuts[faces]
     triangles = starts[faces][:, None] + np.stack([np.zeros_like(step), step + 1, step + 2], axis=1)
     places = np.asarray(points, np.float64)[indices[corners]]
-    folded, normals = _folded(places, triangles, faces, len(counts))
+    more = counts[faces] > 3
+    folded, normals = _folded(places, triangles[more], faces[more], len(counts))
     quads = folded[counts[folded] == 4]
     for half, local in enumerate(([0, 1, 3], [1, 2, 3])):  # the other diagonal
         triangles[cuts[quads] + half] = starts[quads][:, None] + local

@@ -15,7 +15,7 @@ from ringlet.io.hair import read_hair
 from ringlet.io.obj import read_obj_curves, read_obj_mesh
 from ringlet.io.tfx import read_tfx
 from ringlet.io.usd.curves import read_usd_curves
-from ringlet.io.usd.mesh import read_usd_clip, read_usd_mesh
+from ringlet.io.usd.mesh import read_usd_clip, read_usd_head, read_usd_mesh
 from ringlet.io.usd.stage import read_usd_space
 
 METRES = StageSpace()
@@ -55,6 +55,24 @@ def read_mesh(
         if _has_suffix(path, ".obj")
         else read_usd_mesh(path, prim, cage, notes)
     )
+
+
+def read_head(
+    path: Path | str,
+    prim: str | None = None,
+    *,
+    space: StageSpace = METRES,
+    cage: bool | None = None,
+    notes: list[str] | None = None,
+) -> tuple[Mesh, list[Mesh], StageSpace]:
+    """Reads a mesh that hair grows on, the other visible surfaces of its file, and the space of the file.
+
+    An OBJ has no other surfaces. Parameters and errors: as for ``read_mesh``
+    """
+    path = Path(path)
+    if _has_suffix(path, ".obj", ".abc"):
+        return read_mesh(path, prim, space=space, cage=cage, notes=notes), [], space
+    return read_usd_head(path, prim, cage, notes)
 
 
 def read_clip(

@@ -58,10 +58,27 @@ def read_usd_mesh(
     notes: receives a sentence for what is not read as a render shows it
     """
     with reading(path, cage) as source:
+        return _noted_mesh(source, select_mesh(source, prim), notes)
+
+
+def read_usd_head(
+    path: Path | str, prim: str | None = None, cage: bool | None = None, notes: list[str] | None = None
+) -> tuple[Mesh, list[Mesh], StageSpace]:
+    """Reads a mesh, the other visible surfaces of its file in their rest pose [m], and the space of the file.
+
+    cage, notes: as for ``read_usd_mesh``
+    """
+    with reading(path, cage) as source:
         chosen = select_mesh(source, prim)
-        if notes is not None and (note := unrefined(source, chosen)):
-            notes.append(note)
-        return mesh_at(source, chosen)
+        mesh = _noted_mesh(source, chosen, notes)
+        others = [mesh_at(source, surface) for surface in shown_surfaces(source) if surface != chosen]
+        return mesh, others, source.space
+
+
+def _noted_mesh(source: Source, prim: Usd.Prim, notes: list[str] | None) -> Mesh:
+    if notes is not None and (note := unrefined(source, prim)):
+        notes.append(note)
+    return mesh_at(source, prim)
 
 
 def read_usd_clip(
