@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 
 HAIRS = "hairs"  # beginning of the names of shapes of hairs in a scene
-RAYS = 2  # per pixel
 REACH = 6  # pixels to each side along a hair
 ALIKE = 0.7  # cosine of the double angle from which on a pixel counts as along the same hairs
 
@@ -52,20 +51,18 @@ class HairField:
 
 
 def hair_field(mi: Any, scene: Any) -> HairField:
-    """Casts ``RAYS`` rays a pixel to see where hair is, and how it runs."""
+    """Casts a ray per pixel to see where hair is, and how it runs."""
     is_hair = np.array([False, *(shape.id().startswith(HAIRS) for shape in scene.shapes())])  # 0 is the background
     if not is_hair.any():
         return HairField(np.zeros((1, 1), np.float32), np.zeros((1, 1, 2), np.float32))
     integrator = mi.load_dict({"type": "aov", "aovs": "tangent:dp_dv,shape:shape_index"})
     to_camera = np.array(scene.sensors()[0].world_transform().matrix).reshape(4, 4)[:3, :3].T
-    sums: Any = 0.0
-    for seed in range(RAYS):
-        seen = np.array(mi.render(scene, integrator=integrator, spp=1, seed=seed), np.float64)
-        hair = is_hair[np.rint(seen[:, :, 3]).astype(np.int64)].astype(np.float64)
-        run = seen[:, :, :3] @ to_camera.T[:, :2]
-        squared = np.maximum((run**2).sum(axis=2), 1e-30)
-        double = np.stack([run[:, :, 0] ** 2 - run[:, :, 1] ** 2, 2.0 * run[:, :, 0] * run[:, :, 1]], axis=2)
-        sums = sums + np.concatenate([hair[:, :, None], hair[:, :, None] * double / squared[:, :, None]], axis=2)
-    mean = gaussian_filter(sums / RAYS, (1.2, 1.2, 0.0)).astype(np.float32)
+    seen = np.array(mi.render(scene, integrator=integrator, spp=1), np.float64)
+    hair = is_hair[np.rint(seen[:, :, 3]).astype(np.int64)].astype(np.float64)
+    run = seen[:, :, :3] @ to_camera.T[:, :2]
+    squared = np.maximum((run**2).sum(axis=2), 1e-30)
+    double = np.stack([run[:, :, 0] ** 2 - run[:, :, 1] ** 2, 2.0 * run[:, :, 0] * run[:, :, 1]], axis=2)
+    field = np.concatenate([hair[:, :, None], hair[:, :, None] * double / squared[:, :, None]], axis=2)
+    mean = gaussian_filter(field, (1.2, 1.2, 0.0)).astype(np.float32)
     direction = mean[:, :, 1:] / np.maximum(mean[:, :, :1], np.float32(1e-3))
     return HairField(mean[:, :, 0], direction.astype(np.float32))
