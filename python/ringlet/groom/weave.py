@@ -6,6 +6,7 @@ Seen from the front, strands cross where their paths have the same x; the one wi
 
 from __future__ import annotations
 
+from functools import cache
 from itertools import pairwise
 from typing import Literal
 
@@ -82,17 +83,23 @@ def touching_radius(pattern: Pattern, strands: int, width: float, depth: float, 
 
 def _least_distance(pattern: Pattern, strands: int, across: float, front: float, pitch: float) -> float:
     """Least distance between the paths of the first strand and any other [m]."""
+    x, z, ahead = _apart(pattern, strands)
+    square = (across * x) ** 2 + (front * z) ** 2 + (pitch * ahead) ** 2
+    return float(np.sqrt(square.min()))
+
+
+@cache
+def _apart(pattern: Pattern, strands: int) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Places of the other strands from that of the first, up to half a turn behind and ahead of it.
+
+    x, z: across and towards the front, shape (strands - 1, SAMPLES, 2 SAMPLES); ahead: turns, shape (2 SAMPLES,)
+    """
     turn = np.arange(SAMPLES) / SAMPLES
     ahead = np.arange(2 * SAMPLES) / (2 * SAMPLES) - 0.5
+    behind = (np.arange(1, strands) / strands)[:, None, None]
     x, z = path(pattern, strands, 2.0 * np.pi * turn)
-    least = np.inf
-    for k in range(1, strands):
-        other_x, other_z = path(pattern, strands, 2.0 * np.pi * (turn[:, None] + ahead + k / strands))
-        square = (
-            (across * (other_x - x[:, None])) ** 2 + (front * (other_z - z[:, None])) ** 2 + (pitch * ahead[None]) ** 2
-        )
-        least = min(least, float(square.min()))
-    return float(np.sqrt(least))
+    other_x, other_z = path(pattern, strands, 2.0 * np.pi * (turn[:, None] + ahead + behind))
+    return other_x - x[:, None], other_z - z[:, None], ahead
 
 
 def braid_word(places: NDArray) -> list[tuple[int, int]]:
