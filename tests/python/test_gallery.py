@@ -13,8 +13,10 @@ import numpy as np
 import pytest
 from PIL import Image
 from ringlet.data.groom import Groom
+from ringlet.groom.check import check_groom
 from ringlet.groom.load import load
 from ringlet.groom.sections import STRAND
+from ringlet.io import read_meshes
 from ringlet.picture.bodies import PosedBody
 from ringlet.picture.camera import frame
 from ringlet.picture.sheet import draw_tile, subsample
@@ -96,7 +98,9 @@ def test_locks_of_a_style_are_rooted_in_the_scalp_and_stay_out_of_the_head(style
     name, _, groom = style
     assert np.isin(groom.locks.curve["root_triangle"], groom.scalp.region("scalp")).all()
     assert np.isfinite(groom.locks.points).all() and (groom.locks.lengths() > 5e-4).all()
-    found = ringlet.check_groom(groom)["found"]
+    meshes = read_meshes(groom.scalp_file, groom.cage)
+    beside = [mesh for mesh in meshes if mesh.name != groom.scalp.name and groom.shows(mesh.name)]
+    found = check_groom(groom, beside).summary()
     assert max(found[kind]["depth"] for kind in ("scalp", "body")) < 3e-3, name
 
 

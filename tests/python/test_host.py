@@ -74,14 +74,17 @@ def ball(radius: float = 0.09, rings: int = 8, sides: int = 12) -> dict[str, np.
     }
 
 
+def start_process() -> RingletProcess:
+    command = [sys.executable, "-c", "import ringlet.cli; ringlet.cli.main()", "serve"]
+    return RingletProcess(command, {**os.environ, "OMP_NUM_THREADS": "1"})
+
+
 class Host:
     """A host that waits for its answers."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, process: RingletProcess, folder: Path) -> None:
+        self.process = process
         self.folder = folder
-        environment = {**os.environ, "OMP_NUM_THREADS": "1"}
-        command = [sys.executable, "-c", "import ringlet.cli; ringlet.cli.main()", "serve"]
-        self.process = RingletProcess(command, environment)
         self.before: dict[int, list[dict]] = {}  # progress and warnings of each request
 
     def send(self, do, arrays=None, **fields) -> int:
@@ -110,11 +113,17 @@ class Host:
         assert answer.header["kind"] == "result", answer.header
 
 
+@pytest.fixture(scope="module")
+def process():
+    """One process for all hosts: each has a folder of its own."""
+    started = start_process()
+    yield started
+    started.stop()
+
+
 @pytest.fixture
-def host(tmp_path):
-    found = Host(tmp_path)
-    yield found
-    found.process.stop()
+def host(process, tmp_path):
+    return Host(process, tmp_path)
 
 
 def recipe(text: str = RECIPE, *changes) -> dict:
@@ -359,7 +368,8 @@ def test_a_canceled_shot_is_resumed_to_the_same_bits(host):
     assert hairs["counts"]["hairs"] == 60 and Path(hairs["path"]).exists()
 
 
-def test_a_killed_process_is_noticed_and_leaves_no_half_of_a_file(host):
+def test_a_killed_process_is_noticed_and_leaves_no_half_of_a_file(tmp_path):
+    host = Host(start_process(), tmp_path)
     host.send_head()
     host.ask("groom", recipe=recipe(), hairs=None)
     os.kill(host.process.pid, signal.SIGKILL)
