@@ -67,7 +67,7 @@ build() { # the core, its tests and the wheel
     PATH=$bin:$PATH CMAKE_BUILD_PARALLEL_LEVEL=${JOBS:-2} _PYTHON_HOST_PLATFORM=linux-aarch64 \
         SETUPTOOLS_EXT_SUFFIX=.cpython-311-aarch64-linux-gnu.so \
         "$bin/python" -m pip wheel --quiet --no-build-isolation --no-deps --wheel-dir "$arm/wheel" \
-        --config-settings=build-dir="$arm/core" --config-settings=cmake.define.RINGLET_TESTS=ON \
+        --config-settings=build-dir="$arm/core" --config-settings=build.targets="_core;ringlet_tests" \
         --config-settings=cmake.define.CMAKE_TOOLCHAIN_FILE="$PWD/cmake/arm64.cmake" \
         --config-settings=cmake.define.Python_INCLUDE_DIR="$sysroot/usr/include/python3.11" \
         --config-settings=cmake.define.CMAKE_CXX_FLAGS="-idirafter $sysroot/usr/include" . # where Debian's pyconfig.h looks

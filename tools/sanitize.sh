@@ -11,7 +11,7 @@ sanitized() { # folder, sanitizers, then options of the tests
     local folder=build/$1 sanitizers=$2
     shift 2
     "$bin/cmake" -S . -B "$folder" -G Ninja -D CMAKE_BUILD_TYPE=RelWithDebInfo -D CMAKE_CXX_FLAGS_RELWITHDEBINFO="-O1" \
-        -D CMAKE_MAKE_PROGRAM="$bin/ninja" -D Python_EXECUTABLE="$bin/python" -D SKBUILD_PROJECT_VERSION=0 -D RINGLET_TESTS=ON \
+        -D CMAKE_MAKE_PROGRAM="$bin/ninja" -D Python_EXECUTABLE="$bin/python" -D SKBUILD_PROJECT_VERSION=0 \
         -D RINGLET_SANITIZE="$sanitizers" >"$folder.log" 2>&1 || { cat "$folder.log" >&2; return 1; }
     "$bin/cmake" --build "$folder" --target ringlet_tests -j "${JOBS:-2}"
     if [ "$sanitizers" = thread ] && nm "$folder/ringlet_tests" | grep -E ' U (GOMP|omp)_'; then

@@ -22,7 +22,7 @@ step() { # name, command …
 }
 
 cpp_tests() {
-    $bin/cmake -S . -B build/editable -D RINGLET_TESTS=ON && $bin/cmake --build build/editable --target ringlet_tests &&
+    $bin/cmake -S . -B build/editable && $bin/cmake --build build/editable --target ringlet_tests &&
         $bin/ctest --test-dir build/editable --output-on-failure
 }
 

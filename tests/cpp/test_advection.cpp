@@ -1,4 +1,5 @@
 // Advection with bodies.
+#include "ringlet/scene/prescribed_motion.h"
 #include "ringlet/scene/space_map.h"
 
 #include <Eigen/Geometry>
@@ -58,6 +59,21 @@ BOOST_AUTO_TEST_CASE(space_between_parting_bodies_stretches_in_order) {
     for (size_t k = 1; k < points.size(); ++k) BOOST_TEST(to[k][0] > to[k - 1][0]);
     BOOST_TEST(std::abs(to.front()[0] - points.front()[0]) < 1e-4);
     BOOST_TEST(std::abs(to[points.size() - 1][0] - points.back()[0] - 0.04) < 1e-4);
+}
+
+BOOST_AUTO_TEST_CASE(a_body_moves_affinely_unless_it_is_dented) {
+    std::vector<Vec3> start;
+    const SceneVertices all = between_two_cubes({}, start);
+    for (const double depth : {1.0, 0.0}) { // of the cube: solid, then flat
+        for (Vec3 &at : start) at[2] *= depth;
+        Mat3 map;
+        map << 1.1, 0.3, 0.0, -0.2, 0.9, 0.1, 0.0, 0.4, 1.3;
+        std::vector<Vec3> target;
+        for (const Vec3 &at : start) target.push_back(map * at + Vec3(0.3, -0.1, 0.2));
+        BOOST_TEST(PrescribedMotion({all, start, start, target}).moves_affinely(1));
+        target.back() += Vec3(0.0, 1e-3, 0.0);
+        BOOST_TEST(!PrescribedMotion({all, start, start, target}).moves_affinely(1));
+    }
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -12,10 +12,10 @@ using namespace ringlet::baseline;
 namespace {
 
 // Random positive definite matrix that fills the band: a diagonal, and two random squares u uᵀ of `band` entries per block.
-template <int block, int band> struct RandomSystem {
+template <int block, int band> struct BandedSystem {
     using Matrix = Banded<double, block, band>;
 
-    explicit RandomSystem(int vertices) : memory(Matrix::entries(block * vertices)), matrix(memory.data(), block * vertices) {
+    explicit BandedSystem(int vertices) : memory(Matrix::entries(block * vertices)), matrix(memory.data(), block * vertices) {
         const int size = block * vertices;
         std::mt19937 random(7);
         std::normal_distribution<double> normal;
@@ -40,7 +40,7 @@ template <int block, int band> struct RandomSystem {
     Eigen::MatrixXd dense;
 };
 
-using Systems = std::tuple<RandomSystem<3, 12>, RandomSystem<4, 11>>; // hinges; material frames
+using Systems = std::tuple<BandedSystem<3, 12>, BandedSystem<4, 11>>; // hinges; material frames
 
 } // namespace
 

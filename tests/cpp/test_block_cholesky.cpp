@@ -12,17 +12,17 @@ namespace {
 
 using Cholesky = BlockCholesky<3>;
 
-struct Random {
+struct SparseSystem {
     std::vector<Cholesky::Block> diagonal;
     std::vector<Cholesky::Entry> below;
     Eigen::MatrixXd dense;
 };
 
-Random random_matrix(int rows, int entries, double dominance, unsigned seed) {
+SparseSystem random_matrix(int rows, int entries, double dominance, unsigned seed) {
     std::mt19937 engine(seed);
     std::uniform_real_distribution<> value(-1.0, 1.0);
     std::uniform_int_distribution<> index(0, rows - 1);
-    Random random{{}, {}, Eigen::MatrixXd::Zero(3 * rows, 3 * rows)};
+    SparseSystem random{{}, {}, Eigen::MatrixXd::Zero(3 * rows, 3 * rows)};
     std::set<std::array<int, 2>> taken;
     while (int(taken.size()) < entries) {
         const int a = index(engine), b = index(engine);
@@ -46,7 +46,7 @@ BOOST_AUTO_TEST_SUITE(block_cholesky)
 
 BOOST_AUTO_TEST_CASE(solves_as_a_dense_factor_does) {
     for (const int rows : {1, 2, 7, 60}) {
-        const Random random = random_matrix(rows, rows > 2 ? 2 * rows : rows - 1, 40.0, unsigned(rows));
+        const SparseSystem random = random_matrix(rows, rows > 2 ? 2 * rows : rows - 1, 40.0, unsigned(rows));
         Cholesky factor;
         BOOST_REQUIRE(factor.factor(random.diagonal, random.below));
         Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(3 * rows, -1.0, 2.0);
@@ -59,7 +59,7 @@ BOOST_AUTO_TEST_CASE(solves_as_a_dense_factor_does) {
 }
 
 BOOST_AUTO_TEST_CASE(refuses_a_matrix_that_is_not_positive_definite) {
-    const Random random = random_matrix(20, 40, 0.1, 3);
+    const SparseSystem random = random_matrix(20, 40, 0.1, 3);
     BOOST_TEST(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(random.dense).eigenvalues()[0] < 0.0);
     Cholesky factor;
     BOOST_TEST(!factor.factor(random.diagonal, random.below));

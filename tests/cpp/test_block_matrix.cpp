@@ -14,8 +14,8 @@ using namespace ringlet;
 namespace {
 
 // A random positive definite matrix on a ring with chords.
-struct RandomSystem {
-    explicit RandomSystem(int rows) {
+struct BlockSystem {
+    explicit BlockSystem(int rows) {
         std::vector<std::array<int, 2>> pairs;
         for (int i = 0; i < rows; ++i) {
             pairs.push_back({i, (i + 1) % rows});
@@ -48,7 +48,7 @@ struct RandomSystem {
 BOOST_AUTO_TEST_SUITE(block_matrix)
 
 BOOST_AUTO_TEST_CASE(the_product_with_a_vector_agrees_with_a_dense_matrix) {
-    const RandomSystem system(23);
+    const BlockSystem system(23);
     const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(69, -1, 2);
     Eigen::VectorXd y;
     system.matrix.multiply(x, y);
@@ -56,14 +56,14 @@ BOOST_AUTO_TEST_CASE(the_product_with_a_vector_agrees_with_a_dense_matrix) {
 }
 
 BOOST_AUTO_TEST_CASE(pairs_outside_the_pattern_have_no_slot) {
-    const RandomSystem system(23);
+    const BlockSystem system(23);
     BOOST_TEST(system.matrix.slot(0, 2) == -1);
     BOOST_TEST(system.matrix.slot(0, 1) >= 0);
     BOOST_TEST(system.matrix.column(system.matrix.diagonal(7)) == 7);
 }
 
 BOOST_AUTO_TEST_CASE(the_scalar_rows_are_those_of_the_dense_matrix) {
-    const RandomSystem system(23);
+    const BlockSystem system(23);
     const ScalarRows rows = system.matrix.scalar_rows();
     Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(69, 69);
     for (int r = 0; r < 69; ++r)
@@ -97,7 +97,7 @@ BOOST_AUTO_TEST_CASE(the_incomplete_factor_of_a_chain_is_exact) {
 }
 
 BOOST_AUTO_TEST_CASE(an_incomplete_factor_needs_fewer_iterations_than_no_preconditioner) {
-    const RandomSystem system(200);
+    const BlockSystem system(200);
     const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(600, -1, 2);
     const auto apply = [&](const auto &v, auto &Av) { system.matrix.multiply(v, Av); };
     IncompleteCholesky cholesky;

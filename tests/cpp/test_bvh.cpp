@@ -17,15 +17,15 @@ SweptBox box_at(const Eigen::Array3f &start, const Eigen::Array3f &end, float ha
     return box;
 }
 
-using Pairs = std::set<std::array<int, 2>>;
+using LeafPairs = std::set<std::array<int, 2>>;
 
-Pairs traversed(const Bvh &tree) {
+LeafPairs traversed(const Bvh &tree) {
     Traversal traversal;
     traversal.a = traversal.b = tree.nodes();
     traversal.one_tree = true, traversal.is_static = false;
     traversal.left = 1, traversal.found = 0;
     traversal.nodes[0] = {{0, 0}};
-    Pairs pairs;
+    LeafPairs pairs;
     for (; traversal.left > 0; traversal.found = 0) {
         RINGLET_DISPATCH(traverse, traversal, 1000000);
         for (int k = 0; k < traversal.found; ++k) {
@@ -37,8 +37,8 @@ Pairs traversed(const Bvh &tree) {
     return pairs;
 }
 
-Pairs all_pairs(const std::vector<SweptBox> &boxes) {
-    Pairs pairs;
+LeafPairs all_pairs(const std::vector<SweptBox> &boxes) {
+    LeafPairs pairs;
     for (int i = 0; i < int(boxes.size()); ++i)
         for (int j = i + 1; j < int(boxes.size()); ++j)
             if (may_overlap(boxes[i], boxes[j]) && overlap_at_one_time(boxes[i], boxes[j], 0.0f)) pairs.insert({i, j});

@@ -1,4 +1,5 @@
 // Rest shapes and their correction for resolution.
+#include "ringlet/geometry/frames.h"
 #include "ringlet/rest/resolution.h"
 #include "ringlet/rest/rest_shape.h"
 
@@ -39,6 +40,16 @@ BOOST_AUTO_TEST_CASE(a_helix_has_the_same_strains_everywhere) {
         BOOST_TEST(std::abs(rest.length[i] - rest.length[1]) < 1e-15);
         BOOST_TEST(std::abs(rest.angle[i] - rest.angle[1]) < 1e-12);
         BOOST_TEST(std::abs(rest.dihedral[i] - rest.dihedral[1]) < 1e-12);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(transport_is_the_least_rotation) {
+    const Vec3 a(1.0, 2.0, -0.5), v(0.3, -0.2, 0.7);
+    for (const Vec3 &b : {Vec3(0.5, -1.0, 2.0), Vec3(2.0 * a), Vec3(-3.0 * a), Vec3(-a + Vec3(0.1, 0.0, 0.0))}) {
+        BOOST_TEST((transport(a.normalized(), a, b) - b.normalized()).norm() < 1e-9);
+        BOOST_TEST(std::abs(transport(v, a, b).norm() - v.norm()) < 1e-12);
+        const Vec3 axis = a.cross(b);
+        BOOST_TEST((transport(axis, a, b) - axis).norm() < 1e-9 * (1.0 + axis.norm()));
     }
 }
 

@@ -9,7 +9,7 @@ using namespace ringlet::baseline;
 
 namespace {
 
-constexpr int vertices = 6;
+constexpr int strand_vertices = 6;
 
 Vec<double> vec(const Eigen::Vector3d &v) { return {v.x(), v.y(), v.z()}; }
 
@@ -19,13 +19,13 @@ struct MovedStrand {
         std::srand(seed);
         const Eigen::Quaterniond rotation = Eigen::Quaterniond::UnitRandom();
         const Eigen::Vector3d shift = Eigen::Vector3d::Random();
-        for (int i = 0; i < vertices; ++i) {
+        for (int i = 0; i < strand_vertices; ++i) {
             const Eigen::Vector3d p = Eigen::Vector3d::Random();
             start[i] = vec(p);
             target[i] = vec(rotation * p + shift);
         }
     }
-    Vec<double> start[vertices], target[vertices];
+    Vec<double> start[strand_vertices], target[strand_vertices];
 };
 
 } // namespace
@@ -36,7 +36,7 @@ BOOST_AUTO_TEST_CASE(three_held_vertices_move_the_strand_rigidly) {
     for (int seed = 0; seed < 50; ++seed) {
         const MovedStrand strand(seed);
         const RootMotion<double> root(strand.start, strand.target, true);
-        for (int i = 0; i < vertices; ++i) BOOST_TEST(norm(root.apply(strand.start[i]) - strand.target[i]) < 1e-12);
+        for (int i = 0; i < strand_vertices; ++i) BOOST_TEST(norm(root.apply(strand.start[i]) - strand.target[i]) < 1e-12);
         const Vec<double> edge = strand.start[4] - strand.start[3];
         BOOST_TEST(norm(root.rotate(edge) - (strand.target[4] - strand.target[3])) < 1e-12);
     }
@@ -46,7 +46,7 @@ BOOST_AUTO_TEST_CASE(fewer_held_vertices_translate_it) {
     const MovedStrand strand(1);
     const RootMotion<double> root(strand.start, strand.target, false);
     const Vec<double> shift = strand.target[0] - strand.start[0];
-    for (int i = 0; i < vertices; ++i) BOOST_TEST(norm(root.apply(strand.start[i]) - (strand.start[i] + shift)) < 1e-15);
+    for (int i = 0; i < strand_vertices; ++i) BOOST_TEST(norm(root.apply(strand.start[i]) - (strand.start[i] + shift)) < 1e-15);
 }
 
 BOOST_AUTO_TEST_CASE(a_root_in_line_translates_it) {

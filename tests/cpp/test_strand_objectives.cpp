@@ -190,6 +190,8 @@ BOOST_AUTO_TEST_CASE(the_curved_path_is_the_direction_to_first_order) {
     }
 }
 
+namespace {
+
 // A free strand with the direction, of its vertices and frames, of a rigid rotation about its first vertex, across the first
 // edge: that has no frame.
 struct RotatingStrand : RandomStrand<RodObjective<double>> {
@@ -211,6 +213,8 @@ struct RotatingStrand : RandomStrand<RodObjective<double>> {
     }
     std::vector<double> direction;
 };
+
+} // namespace
 
 BOOST_AUTO_TEST_CASE(a_rigid_rotation_strains_nothing) {
     for (int seed = 0; seed < 10; ++seed) {

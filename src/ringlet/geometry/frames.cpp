@@ -1,6 +1,7 @@
 #include "ringlet/geometry/frames.h"
 
 #include <cmath>
+#include <numbers>
 
 namespace ringlet {
 namespace {
@@ -18,6 +19,19 @@ double reflection_factor(const Vec3 &normal) {
 }
 
 } // namespace
+
+// The unit quaternion at half of the angle between the directions.
+Vec3 transport(const Vec3 &v, const Vec3 &a, const Vec3 &b) {
+    constexpr double opposite = 1e-12;
+    const Vec3 from = a.normalized(), to = b.normalized();
+    const double cosine = to.dot(from);
+    if (cosine < opposite - 1.0) return Eigen::Quaterniond(Eigen::AngleAxisd(std::numbers::pi, from.unitOrthogonal())) * v;
+    const double scale = std::sqrt((1.0 + cosine) * 2.0);
+    Eigen::Quaterniond rotation;
+    rotation.vec() = from.cross(to) * (1.0 / scale);
+    rotation.w() = scale * 0.5;
+    return rotation * v;
+}
 
 Vec3 any_orthogonal(const Vec3 &tangent) {
     int smallest = 0;

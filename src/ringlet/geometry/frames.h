@@ -24,6 +24,10 @@ void tangents(View<Vec3> points, std::span<Vec3> result);
 // orthogonal to their tangents.
 void transport(View<Vec3> points, View<Vec3> tangents, const Vec3 &axis, std::span<Vec3> result);
 
+// v parallel-transported from the direction of a to that of b: by the least rotation, which is about any orthogonal axis where
+// they are opposite.
+Vec3 transport(const Vec3 &v, const Vec3 &a, const Vec3 &b);
+
 // Some unit vector orthogonal to a unit vector.
 Vec3 any_orthogonal(const Vec3 &tangent);
 

@@ -1,15 +1,11 @@
 #include "ringlet/rest/rest_shape.h"
 
+#include "ringlet/geometry/frames.h"
+
 #include <Eigen/Geometry>
 #include <cmath>
 
 namespace ringlet {
-namespace {
-
-// Parallel transport of v from the direction of a to that of b.
-Vec3 transport(const Vec3 &v, const Vec3 &a, const Vec3 &b) { return Eigen::Quaterniond::FromTwoVectors(a, b) * v; }
-
-} // namespace
 
 RestShape measure_rest_shape(View<int> offsets, View<Vec3> points) {
     const size_t n = points.size();

@@ -2,9 +2,8 @@
 
 #include "ringlet/scene/settings.h"
 
-#include <Eigen/Geometry>
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -51,20 +50,24 @@ std::vector<int> PrescribedMotion::rigid_bodies() const {
 
 bool PrescribedMotion::moves_affinely(int body) const {
     const int first = vertices.bodies[body], end = vertices.bodies[body + 1];
-    Vec3 middle = Vec3::Zero();
-    for (int v = first; v < end; ++v) middle += led[v] / (end - first);
-    Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
-    Eigen::Matrix<double, 4, 3> moments = Eigen::Matrix<double, 4, 3>::Zero();
+    Vec3 middle = Vec3::Zero(), moved = Vec3::Zero();
+    for (int v = first; v < end; ++v) middle += led[v] / (end - first), moved += target[v] / (end - first);
+    Mat3 spread = Mat3::Zero(), moments = Mat3::Zero();
     double extent = 0.0;
     for (int v = first; v < end; ++v) {
-        const Eigen::Vector4d at((led[v] - middle).homogeneous());
-        normal += at * at.transpose();
-        moments += at * (target[v] - middle).transpose();
-        extent = std::max(extent, at.head<3>().norm());
+        const Vec3 at = led[v] - middle;
+        spread += at * at.transpose();
+        moments += (target[v] - moved) * at.transpose();
+        extent = std::max(extent, at.norm());
     }
-    const Eigen::Matrix<double, 4, 3> fit = normal.completeOrthogonalDecomposition().solve(moments);
+    // Least squares; a body without thickness says nothing of the motion across it.
+    const Eigen::SelfAdjointEigenSolver<Mat3> principal(spread);
+    Mat3 linear = Mat3::Zero();
+    for (int k = 0; k < 3; ++k)
+        if (const double extent2 = principal.eigenvalues()[k]; extent2 > scene_settings::thin2 * principal.eigenvalues()[2])
+            linear += moments * principal.eigenvectors().col(k) * principal.eigenvectors().col(k).transpose() / extent2;
     for (int v = first; v < end; ++v) {
-        const Vec3 to = middle + fit.transpose() * Eigen::Vector4d((led[v] - middle).homogeneous());
+        const Vec3 to = moved + linear * (led[v] - middle);
         if (!((to - target[v]).norm() <= scene_settings::affine * extent)) return false;
     }
     return true;

@@ -10,6 +10,7 @@ inline constexpr double same_place2 = 1e-20;    // [m²]: vertices that follow a
 inline constexpr int motion_samples = 1000;     // vertices that determine the motion of most
 inline constexpr int zone_rounds = 6;           // of impact zones, where there are bodies
 inline constexpr double affine = 1e-3;          // deviation from an affine motion, of a body's extent
+inline constexpr double thin2 = 1e-12;          // square of the thickness at which a body is flat, of its length
 inline constexpr double dent_deviation = 0.2;   // of its surface from a body's own motion, relative to that of most
 inline constexpr double least_part = 1.0 / 16;  // of their motions that bodies try to make at once
 inline constexpr double guess_rounding = 1e-12; // [m]: a guess that moves a vertex less leaves it where it is

@@ -1,5 +1,6 @@
 #include "ringlet/strand/state.h"
 
+#include "ringlet/geometry/frames.h"
 #include "ringlet/rest/rest_shape.h"
 #include "ringlet/rest/stability.h"
 #include "ringlet/strand/lane_groups.h"
@@ -23,11 +24,10 @@ void set_untwisted_directors(const StrandModel &model, View<Vec3> positions, con
             model.rest_angle[first + 1] > strand_settings::bent_angle && now.angle[first + 1] > strand_settings::bent_angle;
         state.directors[first + 1] =
             bent ? now.normal[first + 1]
-                 : Eigen::Quaterniond::FromTwoVectors(model.rest_tangent[first + 1], tangent(first + 1)) *
-                       model.rest_normal[first + 1];
+                 : transport(model.rest_normal[first + 1], model.rest_tangent[first + 1], tangent(first + 1));
         for (int i = first + 1; i + 2 < end; ++i) {
             const Vec3 twisted = Eigen::AngleAxisd(model.rest_dihedral[i], tangent(i)) * state.directors[i];
-            state.directors[i + 1] = Eigen::Quaterniond::FromTwoVectors(tangent(i), tangent(i + 1)) * twisted;
+            state.directors[i + 1] = transport(twisted, tangent(i), tangent(i + 1));
         }
     }
 }
