@@ -12,7 +12,7 @@ from pathlib import Path
 
 from gallery import FOLDER, Shot, photograph, read_styles
 from PIL import Image
-from ringlet.viewer.presets import Preset, looks
+from ringlet.viewer.files.presets import Preset, looks
 
 CAMERA = Shot(at=(0, 40.5, -1), height=37, view=(34, 7), size=(160, 178), samples=48)
 HAIRS = 0.15  # part of the hairs, each wider

@@ -64,6 +64,14 @@ PYTHON = {
     API: {"data", "api", "groom", "shot", "sim", "rest", "viewer", "farm", "host"},
     "cli": {API},
 }
+# Folder of python/ringlet/viewer → folders of it that it may import; the modules beside them join the folders.
+VIEWER = {
+    "files": set(),
+    "show": {"files"},
+    "edit": {"files", "show"},
+    "play": {"files", "show"},
+    "keep": {"files", "show"},
+}
 OUTSIDE = ("bench", "examples")  # folders that may use the public API only
 
 INCLUDE = re.compile(r'^\s*#\s*include\s+"ringlet/([^/"]+)/', re.MULTILINE)
@@ -102,7 +110,11 @@ class Package:
 
     def used(self, file: Path) -> set[str]:
         """Rows that a file imports, at any place in it."""
-        rows = set()
+        return {self.row(module) for module in self.imported(file)}
+
+    def imported(self, file: Path) -> set[str]:
+        """Modules of the package that a file imports, at any place in it."""
+        modules = set()
         for node in ast.walk(ast.parse(file.read_text(), str(file))):
             if isinstance(node, ast.Import):
                 names = [alias.name for alias in node.names]
@@ -115,8 +127,8 @@ class Package:
                 continue
             for name in names:
                 if name == "ringlet" or name.startswith("ringlet."):
-                    rows.add(self.row(self.module(name.removeprefix("ringlet").removeprefix("."))))
-        return rows
+                    modules.add(self.module(name.removeprefix("ringlet").removeprefix(".")))
+        return modules
 
     def module(self, name: str) -> str:
         """Module that contains a dotted name."""
@@ -135,6 +147,11 @@ def python_problems(root: Path) -> Iterator[str]:
             continue
         for used in sorted(package.used(file) - PYTHON[row] - {row}):
             yield f"{where}: {row} may not use {used}"
+        folder = module.split(".")[1] if module.startswith("viewer.") else ""
+        if folder in VIEWER:
+            others = {name.split(".")[1] for name in package.imported(file) if name.startswith("viewer.")} & set(VIEWER)
+            for used in sorted(others - VIEWER[folder] - {folder}):
+                yield f"{where}: {folder} may not use {used}"
     for folder in OUTSIDE:
         for file in sorted((root / folder).rglob("*.py")):
             for used in sorted(package.used(file) - {API}):

@@ -26,10 +26,10 @@ from ringlet.shot import parse_shot
 from ringlet.shot.solver import Solver
 from ringlet.sim.core import step_settings
 from ringlet.viewer import protocol
-from ringlet.viewer.display_groom import GroomEvaluator
-from ringlet.viewer.grooming import Grooming
 from ringlet.viewer.project import Project
 from ringlet.viewer.session import Session
+from ringlet.viewer.show.display_groom import GroomEvaluator
+from ringlet.viewer.show.grooming import Grooming
 from ringlet.viewer.wire import MOST, unpack
 from settings_walk import add
 from shapes import ball

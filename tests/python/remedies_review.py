@@ -49,14 +49,16 @@ from ringlet.picture.bodies import PosedBody
 from ringlet.picture.motion import Pose
 from ringlet.picture.still import check_denoiser, subject
 from ringlet.report import Picture, figure
-from ringlet.viewer import lights, protocol, rendering, run, share_page
-from ringlet.viewer.frame_cache import FrameCache, WatchedFile
-from ringlet.viewer.journal import Journal
-from ringlet.viewer.notes import Stored
+from ringlet.viewer import protocol, run
+from ringlet.viewer.files.journal import Journal
+from ringlet.viewer.keep import share_page
+from ringlet.viewer.keep.notes import Stored
+from ringlet.viewer.play.frame_cache import FrameCache, WatchedFile
 from ringlet.viewer.project import Project
 from ringlet.viewer.protocol import File
-from ringlet.viewer.scene import open_frames, read_scene
 from ringlet.viewer.session import Session
+from ringlet.viewer.show import lights, rendering
+from ringlet.viewer.show.scene import open_frames, read_scene
 from shapes import ball
 from test_viewer_painting import unwrap
 
@@ -351,7 +353,8 @@ REVIEW = [
         'ringlet = 2\nshape = [{ op = "frizz" }]')), asked(FIRST)), in_order(changed(RECIPE,
         ('shape = [{ op = "frizz" }]', "")), added(RECIPE, FRIZZ), asked(FIRST))),
     Advice("{}: {} changes take over {} s; make fewer at a time", patched(asked(protocol.Set(changes=[(["curl",
-        "width"], 2), (["curl", "pitch"], 2)], gesture=1)), lambda: patch("ringlet.viewer.document.MOST_SECONDS", 0.0)),
+        "width"], 2), (["curl", "pitch"], 2)], gesture=1)), lambda: patch("ringlet.viewer.files.document.MOST_SECONDS",
+        0.0)),
         asked(put("curl.width", 2), put("curl.pitch", 2))),
     Advice("{}: {} has {} operators; there is none at {}", asked(protocol.Arrange(action="remove", at=3)),
         asked(FIRST, protocol.Arrange(action="remove", at=0))),

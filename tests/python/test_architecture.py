@@ -37,14 +37,23 @@ def problems():
         ("python/ringlet/sim/run.py", "from ringlet.rest import loft", "sim may not use rest"),
         ("python/ringlet/shot/shot.py", "from ringlet.sim.motion import Motion", "shot may not use sim"),
         ("python/ringlet/hats/hat.py", "", "'hats' is not a folder"),
+        ("python/ringlet/viewer/files/document.py", "from ringlet.viewer.show import maps", "files may not use show"),
         ("bench/groom.py", "import ringlet._core", "bench may use the public API only"),
     ],
 )
 def test_a_forbidden_import_is_reported(problems, tmp_path, file, text, complaint):
-    folders = [f"python/ringlet/{name}" for name in ("groom", "picture", "rest", "sim")]
+    folders = [f"python/ringlet/{name}" for name in ("groom", "picture", "rest", "sim", "viewer/show")]
     for place in ("src/ringlet", "bench", "examples", *folders):
         (tmp_path / place).mkdir(parents=True)
-    for module in ("__init__", "groom/__init__", "groom/curl", "picture/__init__", "rest/__init__", "sim/motion"):
+    for module in (
+        "__init__",
+        "groom/__init__",
+        "groom/curl",
+        "picture/__init__",
+        "rest/__init__",
+        "sim/motion",
+        "viewer/show/maps",
+    ):
         (tmp_path / f"python/ringlet/{module}.py").touch()
     (tmp_path / file).parent.mkdir(parents=True, exist_ok=True)
     (tmp_path / file).write_text(text)

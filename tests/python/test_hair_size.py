@@ -12,7 +12,7 @@ from PIL import Image
 from pxr import Gf, Sdf, Usd, UsdGeom
 from ringlet.data.detail import HAIR_PIXELS, LEVELS, screen_share
 from ringlet.data.share import share
-from ringlet.viewer.scene import open_frames, read_scene
+from ringlet.viewer.show.scene import open_frames, read_scene
 from test_several_grooms import SEVERAL
 
 import ringlet

@@ -17,10 +17,10 @@ from commands import edit, run
 from halts import halts
 from ringlet.data.files import replacing
 from ringlet.viewer import protocol
-from ringlet.viewer.conflicts import differences
-from ringlet.viewer.grooming import Grooming
+from ringlet.viewer.files.conflicts import differences
 from ringlet.viewer.project import Project
 from ringlet.viewer.session import Session
+from ringlet.viewer.show.grooming import Grooming
 
 import ringlet
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from ringlet.viewer.brush import TOOLS, Ball, grab, grab_weights, restore
+from ringlet.viewer.edit.brush import TOOLS, Ball, grab, grab_weights, restore
 
 from ringlet import Curves
 

@@ -11,7 +11,7 @@ import pytest
 from pages import page, read, serving
 from pxr import Usd
 from ringlet.data.errors import UserError
-from ringlet.viewer.frame_cache import FrameCache
+from ringlet.viewer.play.frame_cache import FrameCache
 
 import ringlet
 from ringlet import io

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from ringlet.data.errors import UserError
-from ringlet.viewer.document import Document, _diff
+from ringlet.viewer.files.document import Document, _diff
 
 from ringlet.groom import parse_recipe
 
@@ -150,7 +150,7 @@ def test_the_diff_of_long_texts_is_bounded():
 
 
 def test_changes_that_take_too_long_are_refused_together(document: Document, monkeypatch):
-    monkeypatch.setattr("ringlet.viewer.document.MOST_SECONDS", 0.0)
+    monkeypatch.setattr("ringlet.viewer.files.document.MOST_SECONDS", 0.0)
     with pytest.raises(UserError, match="300 changes take over 0 s; make fewer at a time"):
         document.set([(["curl", "width", "value"], 1.0)] * 300)
     assert document.text == TEXT

@@ -11,10 +11,10 @@ import pytest
 from pages import page, serving
 from PIL import Image
 from ringlet.picture import rigs
-from ringlet.viewer.lights import live_rigs_of
 from ringlet.viewer.project import Project
 from ringlet.viewer.protocol import Lamp
-from ringlet.viewer.surroundings import lamps_and_sky
+from ringlet.viewer.show.lights import live_rigs_of
+from ringlet.viewer.show.surroundings import lamps_and_sky
 
 HEIGHT, WIDTH = 128, 256
 

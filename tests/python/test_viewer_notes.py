@@ -12,11 +12,11 @@ from pages import page, serving
 from PIL import Image
 from pxr import Gf, Usd, UsdGeom
 from ringlet.data.pigment import HAIR_COLORS, absorption, display_color, pigments_of_color, reflectance
-from ringlet.viewer.files import Files
+from ringlet.viewer.files.open_files import Files
+from ringlet.viewer.keep.reviewing import Reviewing
 from ringlet.viewer.project import Project
 from ringlet.viewer.protocol import WriteNote
 from ringlet.viewer.publisher import Publisher
-from ringlet.viewer.reviewing import Reviewing
 from test_viewer_snapshots import LOOK, picture
 
 

@@ -13,8 +13,8 @@ from pages import Page, page, serving
 from PIL import Image
 from pxr import Gf, Sdf, Usd, UsdGeom, Vt
 from ringlet.data.mesh import Mesh
-from ringlet.viewer.brush import Ball
-from ringlet.viewer.texels import Texels
+from ringlet.viewer.edit.brush import Ball
+from ringlet.viewer.edit.texels import Texels
 
 import ringlet
 

@@ -14,8 +14,8 @@ from PIL import Image
 from ringlet.data.lengths import UNITS
 from ringlet.data.quantities import along
 from ringlet.data.share import share
-from ringlet.viewer.mixing import mix, stated
-from ringlet.viewer.presets import LOOK, looks
+from ringlet.viewer.files.mixing import mix, stated
+from ringlet.viewer.files.presets import LOOK, looks
 
 from ringlet.groom import Recipe, parse_recipe, read_recipe
 

@@ -11,7 +11,7 @@ from pages import page, serving
 from PIL import Image
 from ringlet.picture.camera import frame
 from ringlet.viewer.protocol import Render
-from ringlet.viewer.rendering import camera_of
+from ringlet.viewer.show.rendering import camera_of
 
 
 def request(**more: object) -> dict:

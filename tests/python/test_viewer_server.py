@@ -15,7 +15,7 @@ from fastapi.testclient import TestClient
 from pages import HOST, Page, page, serving
 from ringlet.data.errors import UserError, line_of
 from ringlet.viewer import protocol
-from ringlet.viewer.manipulator import LockManipulator
+from ringlet.viewer.edit.manipulator import LockManipulator
 from ringlet.viewer.project import Project
 from ringlet.viewer.protocol import VERSION
 from ringlet.viewer.server import REFUSED, WRONG, AccessControl

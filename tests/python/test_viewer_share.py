@@ -15,7 +15,7 @@ import pytest
 from pages import page, serving
 from PIL import Image
 from ringlet.data.errors import UserError
-from ringlet.viewer.share_page import look_messages, make_page
+from ringlet.viewer.keep.share_page import look_messages, make_page
 from ringlet.viewer.wire import split
 
 import ringlet

@@ -8,8 +8,8 @@ from types import SimpleNamespace
 
 import numpy as np
 from ringlet.shot import parse_shot
-from ringlet.viewer import simulation
-from ringlet.viewer.simulation import Simulation
+from ringlet.viewer.play import simulation
+from ringlet.viewer.play.simulation import Simulation
 
 
 def test_a_run_in_a_long_frame_is_replaced_without_waiting_for_it(monkeypatch):

@@ -11,13 +11,13 @@ import pytest
 from pages import Page, page, serving
 from ringlet.data.errors import UserError
 from ringlet.viewer import protocol
-from ringlet.viewer.conflicts import differences
-from ringlet.viewer.document import set_value
-from ringlet.viewer.grooming import Grooming
-from ringlet.viewer.merge import Versions
+from ringlet.viewer.files.conflicts import differences
+from ringlet.viewer.files.document import set_value
+from ringlet.viewer.files.merge import Versions
 from ringlet.viewer.pages import Page as SessionPage
 from ringlet.viewer.project import Project
 from ringlet.viewer.session import Session
+from ringlet.viewer.show.grooming import Grooming
 
 from ringlet.groom import read_recipe
 
@@ -172,7 +172,7 @@ def test_a_groom_that_cannot_be_made_has_remedies_and_saving_asks(folder: Path):
 
 
 def test_a_groom_of_many_times_the_work_waits_for_a_word(folder: Path, monkeypatch):
-    monkeypatch.setattr("ringlet.viewer.work.SMALL", 10_000)
+    monkeypatch.setattr("ringlet.viewer.show.work.SMALL", 10_000)
     with serving(folder) as client, page(client) as one:
         one.receive("numbers", draft=False)
         one.send(kind="set", changes=[[["locks", "count"], 200]], gesture=1)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 from crossings import Judge
-from ringlet.viewer.display_groom import without_muted
+from ringlet.viewer.show.display_groom import without_muted
 
 from ringlet import api
 

@@ -14,7 +14,7 @@ from ringlet.groom import parse_recipe, read_recipe
 from ringlet.groom.named import GROOMS
 from ringlet.host.requests import AddTable, Change, MoveTable, SetValue, Text
 from ringlet.shot import parse_shot
-from ringlet.viewer.document import Document
+from ringlet.viewer.files.document import Document
 from ringlet.viewer.protocol import Place
 
 LOOKS = ("examples/types", "examples/looks")

@@ -9,15 +9,15 @@ from pathlib import Path
 
 from ringlet.data.errors import UserError
 from ringlet.viewer import protocol
-from ringlet.viewer.caches import Caches
-from ringlet.viewer.conflicts import differences
-from ringlet.viewer.files import Files
-from ringlet.viewer.problems import GROOM, ProblemList, conflict_fixes
+from ringlet.viewer.files.conflicts import differences
+from ringlet.viewer.files.open_files import Files
+from ringlet.viewer.files.problems import GROOM, ProblemList, conflict_fixes
+from ringlet.viewer.files.watcher import FileWatcher
+from ringlet.viewer.keep.reviewing import Reviewing
+from ringlet.viewer.play.caches import Caches
 from ringlet.viewer.project import Project
 from ringlet.viewer.protocol import File
 from ringlet.viewer.publisher import Publisher
-from ringlet.viewer.reviewing import Reviewing
-from ringlet.viewer.watcher import FileWatcher
 from ringlet.viewer.wire import pack
 
 WATCH_INTERVAL = 0.4  # interval at which open files are looked at [s]

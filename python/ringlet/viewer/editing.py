@@ -7,23 +7,25 @@ from contextlib import suppress
 from typing import Any
 
 from ringlet.data.errors import UserError
-from ringlet.viewer import conflicts, eyedropper, protocol
-from ringlet.viewer.comparer import Comparer
+from ringlet.viewer import protocol
 from ringlet.viewer.disk_changes import DiskChanges
-from ringlet.viewer.document_message import document_message
-from ringlet.viewer.drawing import draw
-from ringlet.viewer.files import Files
-from ringlet.viewer.grooming import Grooming
-from ringlet.viewer.manipulator import LockManipulator
-from ringlet.viewer.operator_list import arrange
+from ringlet.viewer.edit import eyedropper
+from ringlet.viewer.edit.drawing import draw
+from ringlet.viewer.edit.manipulator import LockManipulator
+from ringlet.viewer.edit.operator_list import arrange
+from ringlet.viewer.edit.strokes import Strokes
+from ringlet.viewer.files import conflicts
+from ringlet.viewer.files.document_message import document_message
+from ringlet.viewer.files.open_files import Files
+from ringlet.viewer.files.presets import Presets
+from ringlet.viewer.keep.comparer import Comparer
+from ringlet.viewer.keep.reviewing import Reviewing
 from ringlet.viewer.pages import Page, Pages
-from ringlet.viewer.playback import Playback
-from ringlet.viewer.presets import Presets
+from ringlet.viewer.play.playback import Playback
 from ringlet.viewer.protocol import File
 from ringlet.viewer.publisher import Publisher
-from ringlet.viewer.reviewing import Reviewing
-from ringlet.viewer.strokes import Strokes
-from ringlet.viewer.viewport import Viewport
+from ringlet.viewer.show.grooming import Grooming
+from ringlet.viewer.show.viewport import Viewport
 from ringlet.viewer.worker import Timer
 
 REST_AFTER = 1.0  # time without a message of a gesture after which its whole groom is made [s]

@@ -14,29 +14,30 @@ from typing import Any
 from ringlet import api
 from ringlet.data.errors import UserError
 from ringlet.data.former_names import note
-from ringlet.viewer import display_colors, protocol
-from ringlet.viewer.comparer import Comparer
+from ringlet.viewer import protocol
 from ringlet.viewer.disk_changes import DiskChanges
-from ringlet.viewer.display_groom import DisplayGroom
-from ringlet.viewer.document_message import document_message
+from ringlet.viewer.edit.operator_list import operator_names
 from ringlet.viewer.editing import Editing
-from ringlet.viewer.files import Files
-from ringlet.viewer.grooming import Grooming
-from ringlet.viewer.lights import live_rigs_of
-from ringlet.viewer.operator_list import operator_names
+from ringlet.viewer.files.document_message import document_message
+from ringlet.viewer.files.open_files import Files
+from ringlet.viewer.files.problems import LIGHT, OF_OPENING, RECOVERED, RENAMED, ProblemList, dismiss
+from ringlet.viewer.files.recovery import Recovery
+from ringlet.viewer.files.saving import Saving
+from ringlet.viewer.keep.comparer import Comparer
+from ringlet.viewer.keep.reviewing import Reviewing
+from ringlet.viewer.keep.sharing import Sharer
 from ringlet.viewer.pages import Page, Pages
-from ringlet.viewer.playback import Playback
-from ringlet.viewer.problems import LIGHT, OF_OPENING, RECOVERED, RENAMED, ProblemList, dismiss
+from ringlet.viewer.play.playback import Playback
 from ringlet.viewer.project import Project
 from ringlet.viewer.publisher import Publisher
-from ringlet.viewer.recovery import Recovery
-from ringlet.viewer.rendering import Rendering
-from ringlet.viewer.reviewing import Reviewing
-from ringlet.viewer.saving import Saving
-from ringlet.viewer.scene import read_scene
-from ringlet.viewer.sharing import Sharer
-from ringlet.viewer.stage_cameras import StageCameras
-from ringlet.viewer.viewport import Viewport
+from ringlet.viewer.show import display_colors
+from ringlet.viewer.show.display_groom import DisplayGroom
+from ringlet.viewer.show.grooming import Grooming
+from ringlet.viewer.show.lights import live_rigs_of
+from ringlet.viewer.show.rendering import Rendering
+from ringlet.viewer.show.scene import read_scene
+from ringlet.viewer.show.stage_cameras import StageCameras
+from ringlet.viewer.show.viewport import Viewport
 from ringlet.viewer.wire import pack
 from ringlet.viewer.worker import SerialWorker
 

@@ -1,0 +1,1 @@
+"""Edits by hand: brushes, drawing, single locks, operators and colors."""

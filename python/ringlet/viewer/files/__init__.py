@@ -1,0 +1,1 @@
+"""The open files: edited by setting, parsed, saved, merged and recovered."""

@@ -1,0 +1,1 @@
+"""What a review keeps, compares and passes on: snapshots, notes, references, views and share pages."""

@@ -1,0 +1,1 @@
+"""Motion: simulation, its frames and their playback."""

@@ -1,0 +1,1 @@
+"""Grooms as they are shown: made, measured, compared, lit and rendered."""
