@@ -41,9 +41,10 @@ def join(header: dict[str, Any], arrays: Mapping[str, NDArray]) -> bytes:
         block = np.ascontiguousarray(values)
         entries.append((name, f"{block.dtype.kind}{block.dtype.itemsize}", block.size))
         blocks += [block.tobytes(), b"\0" * (-block.nbytes % 8)]
-    text = json.dumps(
-        {**_finite(header), "arrays": entries}, separators=(",", ":"), ensure_ascii=False, allow_nan=False
-    ).encode()
+    try:
+        text = _json({**header, "arrays": entries})
+    except ValueError:  # a value is not finite, which is rare and takes as long as the rest to look for
+        text = _json({**_finite(header), "arrays": entries})
     text += b" " * ((-len(text) - 4) % 8)
     return b"".join([struct.pack("<I", len(text)), text, *blocks])
 
@@ -83,6 +84,10 @@ def _parsed(text: bytes) -> Any:
 def trouble(message: str) -> bytes:
     """Encodes an error message."""
     return pack(Trouble(message=" ".join(message.split())))
+
+
+def _json(header: dict[str, Any]) -> bytes:
+    return json.dumps(header, separators=(",", ":"), ensure_ascii=False, allow_nan=False).encode()
 
 
 def _finite(value: Any) -> Any:
