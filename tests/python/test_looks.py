@@ -1,5 +1,6 @@
 """The looks of the examples."""
 
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +24,9 @@ EAR = 0.365  # height of the middle of an ear [m]
 WOVEN_LOOKS = [recipe for recipe in LOOKS if "strands =" in recipe.read_text()]
 
 
+built = cache(ringlet.build_groom)
+
+
 def name(recipe):
     return recipe.name.removesuffix(".recipe.toml")
 
@@ -30,7 +34,7 @@ def name(recipe):
 @pytest.mark.parametrize("recipe", WOVEN_LOOKS, ids=name)
 def test_a_look_is_short_builds_and_has_strands_of_equal_number(recipe):
     assert len(recipe.read_text().splitlines()) < 60
-    groom = ringlet.build_groom(recipe)
+    groom = built(recipe)
     assert not groom.conflicts and (groom.locks.curve[STRAND_RADIUS] > 5e-4).all()
     sections, strands = np.unique(groom.locks.curve[SECTION], return_counts=True)
     assert len(sections) > 6 and len(set(strands.tolist())) == 1
@@ -40,13 +44,13 @@ def test_a_look_is_short_builds_and_has_strands_of_equal_number(recipe):
 @pytest.mark.parametrize("look", ["cornrows", "flat_twists"])
 def test_no_row_takes_hair_from_farther_than_its_width(look):
     recipe = EXAMPLES / "looks" / f"{look}.recipe.toml"
-    reach = ringlet.build_groom(recipe).locks.curve[REACH]
+    reach = built(recipe).locks.curve[REACH]
     assert 0.0 < reach.max() < 0.85 * read_recipe(recipe).locks.sections.size
 
 
 @pytest.mark.parametrize("look", ["cornrows", "flat_twists"])
 def test_tails_of_rows_leave_the_ears_free_and_no_skin_presses_their_strands_into_each_other(look):
-    groom = ringlet.build_groom(EXAMPLES / "looks" / f"{look}.recipe.toml")
+    groom = built(EXAMPLES / "looks" / f"{look}.recipe.toml")
     locks, points = groom.locks, grid(groom.locks)
     shortest = locks.curve[LAID] < 0.09
     assert shortest.sum() == 2 * (locks.curve[STRAND].max() + 1)
@@ -61,13 +65,13 @@ def test_tails_of_rows_leave_the_ears_free_and_no_skin_presses_their_strands_int
 @pytest.mark.parametrize("recipe", TIED_LOOKS, ids=name)
 def test_a_tied_look_is_short_and_builds_with_its_bands(recipe):
     assert len(recipe.read_text().splitlines()) < 60
-    groom = ringlet.build_groom(recipe)
+    groom = built(recipe)
     assert not groom.conflicts and (groom.locks.curve[TO_TIE] > 0.0).mean() > 0.98
     assert len(groom.accessories) == (2 if "puffs" in recipe.name else 1)
 
 
 def test_the_ombre_is_dark_at_its_roots_and_light_at_its_tips():
-    made = make_hairs(ringlet.build_groom(LOOKS[0].with_name("ombre.recipe.toml")), fraction=0.05).curves
+    made = make_hairs(built(LOOKS[0].with_name("ombre.recipe.toml")), fraction=0.05).curves
     colors = curve_reflectance(made, "hairs").reshape(len(made), -1, 3)
     assert np.median(colors[:, 0], axis=0).max() < 0.02
     assert np.median(colors[:, -1], axis=0)[0] > 0.3
@@ -82,14 +86,14 @@ def test_every_type_has_a_recipe_with_the_density_of_a_full_head(kind):
 
 @pytest.mark.parametrize("kind", ["1", "4C"])
 def test_a_type_grows_as_dense_as_its_recipe_says(kind):
-    groom = ringlet.build_groom(EXAMPLES / "types" / f"{kind}.recipe.toml")
+    groom = built(EXAMPLES / "types" / f"{kind}.recipe.toml")
     assert hairs_per_cm2(groom) == pytest.approx(120, rel=0.05)
 
 
 def test_the_beard_has_the_density_and_lengths_of_a_beard_and_stays_out_of_the_mouth():
     recipe = EXAMPLES / "looks" / "beard.recipe.toml"
     assert len(recipe.read_text().splitlines()) < 60
-    made = ringlet.build_groom(recipe)
+    made = built(recipe)
     grooms = grooms_of(made)
     assert not made.conflicts and list(grooms) == ["hair", "beard", "brows", "lashes", "lower_lashes"]
     assert 40 <= hairs_per_cm2(grooms["beard"]) <= 65
