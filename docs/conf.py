@@ -2,6 +2,8 @@
 
 import importlib.metadata
 import sys
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -35,15 +37,26 @@ html_theme_options = {
 }
 
 
+def write_generated(folder):
+    """What is listed and drawn from the program, the longest first, on all processors: none needs another."""
+    folder.mkdir(exist_ok=True)
+    writers = {
+        write_references: folder,
+        write_theory: folder,
+        write_convergence: folder / "convergence.svg",
+        write_release: folder / "release.svg",
+        write_figures: folder,
+        write_memory: folder / "memory.svg",
+        write_tips: folder / "tips.svg",
+        write_benchmarks: folder / "benchmarks.md",
+    }
+    with ProcessPoolExecutor(mp_context=get_context("fork")) as pool:
+        for done in [pool.submit(write, path) for write, path in writers.items()]:
+            done.result()
+
+
 def setup(app):
     app.add_directive("growth", Growth)
     app.add_directive("measured", Measured)
-    write_references(Path(app.srcdir) / "_generated")
-    write_benchmarks(Path(app.srcdir) / "_generated" / "benchmarks.md")
-    write_convergence(Path(app.srcdir) / "_generated" / "convergence.svg")
-    write_memory(Path(app.srcdir) / "_generated" / "memory.svg")
-    write_release(Path(app.srcdir) / "_generated" / "release.svg")
-    write_tips(Path(app.srcdir) / "_generated" / "tips.svg")
-    write_theory(Path(app.srcdir) / "_generated")
-    write_figures(Path(app.srcdir) / "_generated")
+    write_generated(Path(app.srcdir) / "_generated")
     app.connect("autodoc-process-docstring", as_list)

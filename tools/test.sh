@@ -33,9 +33,9 @@ pytests() { OMP_NUM_THREADS=1 $bin/python -m pytest -n 2 --dist worksteal --dura
 step "C++ tests" cpp_tests
 step "Python tests" pytests tests/python
 step "physics tests" pytests tests/physics
-step "counts of instructions and calls" $bin/python -m pytest -rs tests/counts # with valgrind, where there is one
 step "browser tests" pytests -rs tests/browser # in headless Chromium; where there is none they are skipped, and say so
 # At once, since each leaves a processor idle for a time.
+step "counts of instructions and calls" $bin/python -m pytest -rs tests/counts & # with valgrind, where there is one
 step "lints" tools/lint.sh &
 step "documents" tools/docs.sh &
 wait
