@@ -20,12 +20,12 @@ __all__ = ["run_demo"]
 
 FIRST_FRAME = 1  # of the clip; before it the ribbon is put into the hair
 STILL_FRAME = 22  # in the middle of the quick turn
-STILL_SECONDS = 45.0  # a slow machine gets a noisier picture, not a longer wait
+STILL_SECONDS = 30.0  # a slow machine gets a noisier picture, not a longer wait
 TILES = 8  # of the sheet
 MOVING = 1 / 6  # share of the hairs that move in hair.usdc, which keeps it small; the still has all of them
 
 # Seconds of each stage, as measured on two cores; only the overall bar depends on them.
-SECONDS = {"groom": 2.0, "loft": 5.0, "simulate": 55.0, "still": STILL_SECONDS, "hairs": 4.0, "sheet": 32.0}
+SECONDS = {"groom": 2.0, "loft": 3.0, "simulate": 67.0, "still": STILL_SECONDS + 24.0, "hairs": 4.0, "sheet": 37.0}
 TRUSTED = 1.0  # seconds of work that say how fast this machine is
 
 
