@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from ringlet.api.demo import SECONDS, STILL_SECONDS, Overall
+from ringlet.api.demo import PATHS, SECONDS, STILL_SECONDS, Overall
 from ringlet.cli import progress
 from ringlet.cli.progress import Lines, Pace
 
@@ -54,7 +54,9 @@ def test_the_demo_says_its_time_on_machines_of_any_speed(slowness):
     overall = Overall(lambda name, done, total: name == "demo" and said.append((now[0], done)), lambda: now[0])
     for stage, seconds in SECONDS.items():
         report = overall.of(stage)
-        takes = min(slowness, 1.0) * STILL_SECONDS if stage == "still" else slowness * seconds
+        takes = slowness * seconds
+        if stage == "still":
+            takes += min(slowness * PATHS, STILL_SECONDS) - slowness * PATHS
         for step in range(10):
             now[0] += takes / 10
             report(stage, step + 1, 10)
