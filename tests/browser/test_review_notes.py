@@ -144,7 +144,7 @@ def test_light_lens_and_bookmarks_are_kept_with_the_recipe_for_other_browsers(op
     review.until("ringlet.model.views['0']?.light_turn == 90 && ringlet.model.views['2']")
     page.close()
     other: Review = opened(server)
-    other.until("Math.abs(ringlet.viewer.view.focalLength - 50) < 0.1 && ringlet.viewer.play.stage.lights.turn == 90")
+    other.until("Math.abs(ringlet.viewer.view.focalLength - 50) < 0.1 && ringlet.viewer.stage.lights.turn == 90")
     other.page.get_by_role("button", name="Camera, light and sheet").click()
     assert other.page.get_by_role("button", name="Recall bookmark 2").is_visible()
     assert not other.errors

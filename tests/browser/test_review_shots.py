@@ -123,7 +123,7 @@ def test_a_changed_cloth_material_is_simulated(opened: Any, folder: Path):
     review.until("ringlet.timeline.settled && ringlet.timeline.drawn.against")
 
     def scarf(side: str) -> np.ndarray:
-        at = f"ringlet.viewer.play.stage.bodies.get(1).geometry('{side}').getAttribute('position').array"
+        at = f"ringlet.viewer.stage.bodies.get(1).geometry('{side}').getAttribute('position').array"
         return np.array(review.get(f"Array.from({at})")).reshape(-1, 3)
 
     assert np.abs(scarf("b") - cache.cloths[0].points[3]).max() < 1e-6  # each side shows its own cloth
@@ -133,7 +133,7 @@ def test_a_changed_cloth_material_is_simulated(opened: Any, folder: Path):
     field.fill("1.2")
     field.press("Enter")
     review.until("ringlet.model.settled && !ringlet.timeline.drawn.shot")
-    rest = review.get("Array.from(ringlet.viewer.play.stage.bodies.get(1).rest)")
+    rest = review.get("Array.from(ringlet.viewer.stage.bodies.get(1).rest)")
     review.until("!ringlet.timeline.count")
     assert np.array_equal(scarf("a").ravel(), rest)  # cloth at rest, like the hair
     assert not review.errors
