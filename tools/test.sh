@@ -31,13 +31,13 @@ cpp_tests() {
 pytests() { OMP_NUM_THREADS=1 $bin/python -m pytest -n 2 --dist worksteal --durations 8 "$@"; }
 
 step "C++ tests" cpp_tests
+# At the lowest priority, beside all others: these leave a processor idle for about a quarter of the time.
+step "lints" nice -n 19 tools/lint.sh &
+step "documents" nice -n 19 tools/docs.sh &
 step "Python tests" pytests tests/python
 step "physics tests" pytests tests/physics
 step "browser tests" pytests -rs tests/browser # in headless Chromium; where there is none they are skipped, and say so
-# At once, since each leaves a processor idle for a time.
-step "counts of instructions and calls" $bin/python -m pytest -rs tests/counts & # with valgrind, where there is one
-step "lints" tools/lint.sh &
-step "documents" tools/docs.sh &
+step "counts of instructions and calls" $bin/python -m pytest -rs tests/counts # with valgrind, where there is one
 wait
 
 printf '\nThe slowest tests:\n'
