@@ -64,7 +64,7 @@ PYTHON = {
     API: {"data", "api", "groom", "shot", "sim", "rest", "viewer", "farm", "host"},
     "cli": {API},
 }
-# Folder of python/ringlet/viewer → folders of it that it may import; the modules beside them join the folders.
+# Subfolder of python/ringlet/viewer → subfolders that it may import. Its top-level modules may import all of them.
 VIEWER = {
     "files": set(),
     "show": {"files"},

@@ -99,8 +99,8 @@ def test_locks_of_a_style_are_rooted_in_the_scalp_and_stay_out_of_the_head(style
     assert np.isin(groom.locks.curve["root_triangle"], groom.scalp.region("scalp")).all()
     assert np.isfinite(groom.locks.points).all() and (groom.locks.lengths() > 5e-4).all()
     meshes = read_meshes(groom.scalp_file, groom.cage)
-    beside = [mesh for mesh in meshes if mesh.name != groom.scalp.name and groom.shows(mesh.name)]
-    found = check_groom(groom, beside).summary()
+    colliders = [mesh for mesh in meshes if mesh.name != groom.scalp.name and groom.shows(mesh.name)]
+    found = check_groom(groom, colliders).summary()
     assert max(found[kind]["depth"] for kind in ("scalp", "body")) < 3e-3, name
 
 

@@ -308,7 +308,7 @@ def check_groom(
     if not isinstance(groom, Groom):
         groom = load_groom(groom, variant=variant, progress=progress)
     allowed = grooms.Allowed(root_depth, root_length, thickness, own_radius)
-    others = _beside_scalp(groom)
+    others = _other_meshes(groom)
     findings = grooms.check_groom(groom, others, allowed)
     summary: dict[str, Any] = {
         "locks": len(groom.locks),
@@ -335,8 +335,8 @@ def check_groom(
     return summary
 
 
-def _beside_scalp(groom: Groom) -> list[Mesh]:
-    """The visible meshes in the file of the scalp, but for the scalp; none beside an OBJ."""
+def _other_meshes(groom: Groom) -> list[Mesh]:
+    """Visible meshes in the scalp's USD file, except the scalp; empty for an OBJ."""
     from ringlet import io
 
     file = groom.scalp_file
