@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from review import CHROMIUM, FLAGS, PATIENCE, UNSEEN, Review, Server
+from review import CHROMIUM, FLAGS, PATIENCE, Review, Server
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "python"))
 from small_example import write_example
@@ -74,7 +74,7 @@ def opened(browser: Any, serve: Callable[[str], Server]) -> Iterator[Callable[..
     contexts: list[Any] = []
 
     def open_page(
-        server: Server | str = "small.recipe.toml", *, pixels: float | None = UNSEEN, live: bool = False, **more: Any
+        server: Server | str = "small.recipe.toml", *, pixels: float | None = 0.0, live: bool = False, **more: Any
     ) -> Review:
         """A page in a context of its own; see ``Review`` for its picture."""
         address = (serve(server) if isinstance(server, str) else server).address

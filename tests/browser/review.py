@@ -78,16 +78,21 @@ class Server:
         self.pid = 0
 
 
-UNSEEN = 0.2  # pixels of a picture that nobody looks at, over those of the page
+# A browser without WebGL, whose page has all but the picture.
+BLIND = """
+const { getContext } = HTMLCanvasElement.prototype;
+HTMLCanvasElement.prototype.getContext = function (kind, ...options) {
+    return kind === 'webgl2' ? null : getContext.call(this, kind, ...options);
+};
+"""
 
-# Each picture is drawn in one go, and only where a test asks for it. One that nobody looks at has no light in its hair.
+# Each picture is drawn in one go, and only where a test asks for it.
 QUIET = """
 Object.defineProperty(window, 'ringlet', { configurable: true, set(app) {
     Object.defineProperty(window, 'ringlet', { value: app });
     const { viewer } = app, { pace, painter, view, hair } = viewer, { slice } = pace;
     pace.needed = () => 1;
     pace.slice = (moving) => (moving ? slice.call(pace, true) : { drawing: Infinity, computing: Infinity });
-    if (!LIT) for (const one of Object.values(hair)) one.light = function* () {};
     if (!LIVE) viewer.picture = function* () {
         view.camera.updateMatrixWorld();
         painter.aimAtAll(view);
@@ -102,7 +107,7 @@ Object.defineProperty(window, 'ringlet', { configurable: true, set(app) {
 
 def quiet(pixels: float, *, live: bool) -> str:
     """A script after which a page draws as little as a test needs."""
-    return coarse(pixels) + QUIET.replace("LIT", json.dumps(pixels > UNSEEN)).replace("LIVE", json.dumps(live))
+    return coarse(pixels) + QUIET.replace("LIVE", json.dumps(live)) if pixels else BLIND
 
 
 def coarse(pixels: float) -> str:
@@ -113,7 +118,8 @@ def coarse(pixels: float) -> str:
 class Review:
     """An open page of the review.
 
-    pixels: of its picture over those of the page, which is drawn where a test asks for it; None: as users see it
+    pixels: of its picture over those of the page, which is drawn where a test asks for it; 0: there is none, in a
+            browser without WebGL; None: as users see it
     live:   whether it is drawn at each change too, once
     """
 
@@ -180,7 +186,7 @@ class Review:
                 delete pace.needed;
                 {viewer}.drawNow();
                 if (needed !== pace.needed) pace.needed = needed;
-                return {viewer}.renderer.domElement.toDataURL('image/png');
+                return {viewer}.canvas.toDataURL('image/png');
             }}"""
         )
         return np.asarray(Image.open(io.BytesIO(base64.b64decode(data.split(",")[1]))).convert("RGB"), np.float64)

@@ -40,7 +40,7 @@ def test_gpu_hairs_equal_those_of_the_core(opened: Any, folder: Path, curl: str)
         )
         + curl
     )
-    review: Review = opened()
+    review: Review = opened(pixels=0.1)
     review.picture()
     hairs = build_hairs(build_groom(recipe))
     count, points = len(hairs.curves), int(hairs.curves.counts[0])
@@ -62,7 +62,7 @@ def test_gpu_hairs_of_several_grooms_equal_those_of_the_core(opened: Any, folder
     recipe.write_text(SEVERAL)
     small = folder / "small.recipe.toml"
     small.write_text(small.read_text().replace("per_lock = 3", "per_lock = 7\nfrizz = 0.3\nroot_radius = 0.4") + curl)
-    review: Review = opened("several.recipe.toml")
+    review: Review = opened("several.recipe.toml", pixels=0.1)
     review.picture()
     groom = build_groom(recipe)
     hairs = lay_hairs(groom)

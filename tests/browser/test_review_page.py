@@ -19,7 +19,7 @@ SIXTY_FRAMES = """() => new Promise(done => {
 
 
 def test_an_idle_page_draws_nothing(opened: Any):
-    review: Review = opened(live=True)
+    review: Review = opened(pixels=0.2, live=True)
     review.settled()
     review.until("ringlet.model.measured && ringlet.viewer.idle")
     before = review.get("ringlet.viewer.pictures")
@@ -28,7 +28,7 @@ def test_an_idle_page_draws_nothing(opened: Any):
 
 
 def test_the_page_says_when_it_has_settled(opened: Any):
-    review: Review = opened(live=True)
+    review: Review = opened(pixels=0.2, live=True)
     assert review.get("ringlet.settled")
     change = "ringlet.model.say({ kind: 'set', changes: [[['curl', 'width'], 2]], gesture: 1 })"
     assert not review.get(f"({change}, ringlet.settled)")
@@ -45,7 +45,7 @@ REACH = (Path(__file__).parent / "reach.js").read_text()
 
 
 def test_controls_are_labelled_legible_and_reachable_by_keyboard(opened: Any):
-    review: Review = opened()
+    review: Review = opened(pixels=0.2)
     review.get("ringlet.lock.choose(2)")
     assert review.page.evaluate(REACH) == {"nameless": [], "faint": []}
     review.get("ringlet.brush.show(true)")
@@ -64,6 +64,26 @@ def test_controls_are_labelled_legible_and_reachable_by_keyboard(opened: Any):
     review.page.locator("main canvas").focus()
     review.page.keyboard.press("ArrowLeft")
     assert review.get("ringlet.viewer.camera.position.toArray()") != eye
+
+
+def test_a_browser_without_webgl_shows_a_line_in_place_of_the_picture(opened: Any, folder: Path):
+    review: Review = opened()
+    page = review.page
+    line = page.locator(".undrawn")
+    assert line.inner_text().startswith("No picture: this browser has no WebGL 2. Turn on graphics acceleration")
+    box, clear = line.bounding_box(), review.get("ringlet.viewer.clear")
+    assert clear["x"] < box["x"] and box["x"] + box["width"] < clear["x"] + clear["width"]
+    assert page.get_by_role("button", name="Save picture").is_disabled()
+    assert page.get_by_role("button", name="Record a movie").is_disabled()
+    locks = np.array(review.get("Array.from(ringlet.viewer.hair.a.locks.points)")).reshape(8, -1, 3)
+    tip = locks[:, -1].argmax(axis=0)[1]  # the highest: no other is before it
+    page.mouse.click(*review.project(locks[tip, -1]))
+    assert review.get("ringlet.lock.rows") == [tip]
+    page.keyboard.press("s")
+    review.until("ringlet.model.pictures.size == 1")
+    thumbnail = next((folder / "small.review/snapshots").glob("*.png"))
+    assert np.asarray(Image.open(thumbnail).convert("L")).std() > 10  # the line is written on it
+    assert not review.errors
 
 
 def test_the_page_loads_no_external_resource(opened: Any):
@@ -85,7 +105,7 @@ def test_pictures_and_movies_are_saved(opened: Any):
         assert saved.size == ((2048, 2048) if clear else (800, 500))
         alpha = np.asarray(saved.convert("RGBA"))[:, :, 3]
         assert (alpha[0, 0] < 10 and alpha[1000, 1000] > 245) if clear else alpha.min() == 255
-    review.until("ringlet.viewer.renderer.domElement.width === 800")  # that of the page again, once the picture rests
+    review.until("ringlet.viewer.canvas.width === 800")  # that of the page again, once the picture rests
     film = review.page.get_by_label("Record a movie")
     began = time.monotonic()
     film.click()

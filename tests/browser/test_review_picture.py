@@ -172,7 +172,7 @@ def test_a_picture_in_slices_is_that_of_one_slice(opened: Any):
     review: Review = opened(viewport={"width": 420, "height": 300}, pixels=1)
     review.get("ringlet.viewer.drawNow()")
     one, many, slices = review.get("""(() => {
-        const { painter, view, film, renderer } = ringlet.viewer;
+        const { painter, view, film, canvas } = ringlet.viewer;
         const pictures = [Infinity, 30].map((drawing) => {
             Object.assign(painter.slices, { drawing, computing: Infinity });
             painter.scale(1);
@@ -180,7 +180,7 @@ def test_a_picture_in_slices_is_that_of_one_slice(opened: Any):
             const work = painter.paint(view, { fraction: 0.3, drawings: 2 }, false);
             let slices = 1;
             while (!work.next(30).done) slices++;
-            return [renderer.domElement.toDataURL("image/png"), slices];
+            return [canvas.toDataURL("image/png"), slices];
         });
         return [pictures[0][0], pictures[1][0], pictures.map(([, slices]) => slices)];
     })()""")
@@ -193,12 +193,12 @@ def test_a_smaller_picture_shows_as_much(opened: Any):
     review: Review = opened(viewport={"width": 640, "height": 480}, pixels=1)
     review.get("ringlet.viewer.drawNow()")
     whole, small = review.get("""[1, 0.25].map((scale) => {
-        const { painter, view, film, renderer } = ringlet.viewer, slices = { drawing: Infinity, computing: Infinity };
+        const { painter, view, film, canvas } = ringlet.viewer, slices = { drawing: Infinity, computing: Infinity };
         Object.assign(painter.slices, slices);
         painter.scale(scale);
         film.drawings = 0;
         painter.paint(view, { fraction: 0.3, drawings: 1 }, false).next();
-        return renderer.domElement.toDataURL("image/png");
+        return canvas.toDataURL("image/png");
     })""")
     small = pixels(small)[:, :, :3]
     height, width = small.shape[:2]
@@ -216,7 +216,7 @@ def test_input_between_two_slices_cancels_the_rest_of_a_picture(opened: Any):
         slices.draw = (kind, total, some) => draw.call(slices, kind, total, (first, count) => {
             seen.push({ kind, count, total, eye: viewer.camera.position.x, whole: slices.drawing === Infinity });
             some(first, count);
-            if (seen.length === 4) setTimeout(() => viewer.renderer.domElement.dispatchEvent(key));
+            if (seen.length === 4) setTimeout(() => viewer.canvas.dispatchEvent(key));
         });
         slices.sizes.clear(); // as on a machine of which nothing is known
         viewer.rest = null;
@@ -268,7 +268,7 @@ def test_a_render_is_shown_in_place_wiped_saved_and_ended_by_a_move(opened: Any,
 def test_hairs_that_move_between_two_slices_are_all_brought_to_their_places(opened: Any, folder: Path):
     recipe = folder / "small.recipe.toml"
     recipe.write_text(recipe.read_text().replace("per_lock = 3", "per_lock = 400"))
-    review: Review = opened()
+    review: Review = opened(pixels=0.1)
     review.settled()
     stale, slices = review.get(
         """(() => {

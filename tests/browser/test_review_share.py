@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from review import PATIENCE, Review, coarse
+from review import BLIND, PATIENCE, Review, coarse
 
 import ringlet
 
@@ -54,10 +54,12 @@ def test_the_review_saves_a_share_page(opened: Any, browser: Any, tmp_path: Path
     context = browser.new_context(viewport={"width": 600, "height": 500}, offline=True, reduced_motion="reduce")
     context.set_default_timeout(1000 * PATIENCE)
     page = context.new_page()
+    page.add_init_script(BLIND)
     page.goto((tmp_path / "small.html").as_uri())
     page.wait_for_function("window.look?.ready")
     eyes = [
         one.evaluate(f"{name}.viewer.camera.position.x") for one, name in ((review.page, "ringlet"), (page, "look"))
     ]
     assert abs(eyes[0] - eyes[1]) < 1e-6
+    assert page.locator(".undrawn").is_visible()
     context.close()

@@ -17,7 +17,7 @@ from ringlet import build_hairs
 
 def test_gpu_hairs_stay_below_a_cloth_like_those_of_the_core(opened: Any, folder: Path):
     top = write_roofed(folder)
-    review: Review = opened("cache.usdc")
+    review: Review = opened("cache.usdc", pixels=0.1)
     review.until("ringlet.timeline.count == 1 && ringlet.timeline.settled")
     review.picture()
     hairs = build_hairs(ringlet.read_groom(folder / "groom.usdc"))

@@ -83,7 +83,7 @@ def test_a_snapshot_is_taken_compared_loaded_noted_and_deleted(opened: Any, fold
 
 
 def test_four_looks_have_one_camera_and_their_labels(opened: Any):
-    review: Review = opened(viewport={"width": 1280, "height": 800})
+    review: Review = opened(viewport={"width": 1280, "height": 800}, pixels=0.2)
     page = review.page
     page.keyboard.press("t")
     take(review)

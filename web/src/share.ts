@@ -142,9 +142,4 @@ class SharedLook {
   }
 }
 
-const root = document.getElementById("app")!;
-try {
-  Object.assign(window, { look: new SharedLook(root) });
-} catch (error) {
-  root.replaceChildren(h("p", { class: "failed", role: "alert" }, error instanceof Error ? error.message : String(error)));
-}
+Object.assign(window, { look: new SharedLook(document.getElementById("app")!) });

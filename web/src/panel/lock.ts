@@ -62,7 +62,7 @@ export class LockTool {
     this.isolate.addEventListener("click", () => model.say({ kind: "isolate", locks: this.ids }));
     this.back.addEventListener("click", () => model.say({ kind: "isolate", locks: this.isolatedIds, out: false }));
     this.falloff.style.setProperty("--part", "33%");
-    const canvas = viewer.renderer.domElement;
+    const canvas = viewer.canvas;
     let pressed = { x: 0, y: 0 };
     canvas.addEventListener("pointerdown", (event) => {
       pressed = { x: event.clientX, y: event.clientY };

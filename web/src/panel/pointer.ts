@@ -26,7 +26,7 @@ export class PresenterPointer {
     shape.setAttribute("d", "M2 2l5 13 2.3-5.2L14.5 7.5z");
     arrow.append(shape);
     this.element.append(arrow, this.name);
-    const canvas = viewer.renderer.domElement;
+    const canvas = viewer.canvas;
     canvas.addEventListener("pointermove", (event) => this.moved(event));
     canvas.addEventListener("pointerleave", () => this.moved(null));
     model.on("role", () => this.show(this.at));

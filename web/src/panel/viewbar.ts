@@ -103,6 +103,7 @@ export class Viewbar {
     });
     turn.setAttribute("aria-pressed", "false");
 
+    const none = { disabled: !viewer.renderer };
     const recorder = new Recorder(viewer);
     const film = iconButton("film", "Record a movie", () => {
       if (recorder.running) recorder.stop(name());
@@ -118,7 +119,7 @@ export class Viewbar {
       if (!recorder.running) return;
       tell();
       ticking = window.setInterval(tell, 250);
-    });
+    }, none);
     let ticking = 0;
     const recorded = h("output", { class: "recorded", hidden: true, "aria-label": "Recorded time" });
     film.setAttribute("aria-pressed", "false");
@@ -131,7 +132,7 @@ export class Viewbar {
       overlay,
       iconButton("frame", "Frame all hair (F)", frame),
       turn,
-      iconButton("camera", "Save picture", () => savePicture(viewer, name())),
+      iconButton("camera", "Save picture", () => savePicture(viewer, name()), none),
       film,
       recorded,
       iconButton("share", "Save a share page: one file that shows the look from all sides", () =>

@@ -32,7 +32,7 @@ export class Recorder {
     const types = ["video/mp4;codecs=avc1", "video/webm;codecs=vp9", "video/webm"];
     const mimeType = types.find((type) => MediaRecorder.isTypeSupported(type));
     this.parts = [];
-    this.recorder = new MediaRecorder(this.viewer.renderer.domElement.captureStream(30), {
+    this.recorder = new MediaRecorder(this.viewer.canvas.captureStream(30), {
       mimeType,
       videoBitsPerSecond: 12e6,
     });

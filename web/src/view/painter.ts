@@ -1,6 +1,6 @@
 // Draws the looks of a stage: light in the hair, drawings on a film, and what is over the picture.
 
-import { type Scene, Vector2, WebGLRenderer, type WebGLRenderTarget } from "three";
+import { type Scene, WebGLRenderer, type WebGLRenderTarget } from "three";
 import type { Box, Size } from "./box";
 import { Difference } from "./difference";
 import { Film } from "./film";
@@ -13,7 +13,8 @@ import type { Stage } from "./stage";
 const THINNEST = 0.9; // least width at which a hair is drawn [pixels]
 
 export class Painter {
-  readonly renderer: WebGLRenderer;
+  /** null: there is no WebGL 2, and nothing is drawn. */
+  readonly renderer: WebGLRenderer | null;
   readonly film: Film;
   readonly looks = new Looks();
   readonly slices = new Slices();
@@ -21,6 +22,8 @@ export class Painter {
   composed = false;
   /** What panels leave clear of the canvas. */
   left: Box | null = null;
+  /** Size of the canvas [pixels of the page]. */
+  canvas: Size = { width: 0, height: 0 };
   private readonly finest: number;
   /** Pixels of the film over those of the page. */
   private ratio: number;
@@ -31,20 +34,18 @@ export class Painter {
   /** software: whether there is no graphics card; then pictures are plainer, so that they come at all */
   constructor(
     private readonly stage: Stage,
+    context: WebGL2RenderingContext | null,
     software: boolean,
   ) {
-    this.renderer = new WebGLRenderer({ antialias: false, powerPreference: "high-performance" });
-    this.renderer.autoClear = false;
-    this.renderer.outputColorSpace = "srgb-linear"; // the shaders develop on their own
     this.finest = this.ratio = Math.min(devicePixelRatio, software ? 1 : 2);
-    this.renderer.setPixelRatio(this.finest);
+    this.renderer = context && new WebGLRenderer({ canvas: context.canvas, context });
+    if (this.renderer) {
+      this.renderer.autoClear = false;
+      this.renderer.outputColorSpace = "srgb-linear"; // the shaders develop on their own
+      this.renderer.setPixelRatio(this.finest);
+    }
     this.film = new Film(software ? 0 : 4, software);
     this.second = new Film(software ? 0 : 4, software);
-  }
-
-  get canvas(): Size {
-    const { x, y } = this.renderer.getSize(new Vector2());
-    return { width: x, height: y };
   }
 
   /** What the camera aims at of the canvas. */
@@ -52,14 +53,28 @@ export class Painter {
     return this.composed || !this.left ? { x: 0, y: 0, ...this.canvas } : this.left;
   }
 
+  /** The canvas has another size on the page. */
+  resize(size: Size): void {
+    this.canvas = size;
+    this.renderer?.setSize(size.width, size.height);
+  }
+
   /** Draws at a fraction of the size of the canvas, to which the browser enlarges it. */
   scale(by: number): void {
     this.ratio = by * this.finest;
   }
 
-  /** Draws as many pixels as the page has, for a picture that is kept. */
-  keep(): void {
-    this.ratio = 1;
+  /** Draws a picture that is kept: all of a canvas that has as many pixels. */
+  keep(size: Size, draw: () => void): void {
+    const { renderer, canvas, composed } = this;
+    const ratio = renderer?.getPixelRatio() ?? 1;
+    renderer?.setPixelRatio(1);
+    renderer?.setSize(size.width, size.height, false);
+    [this.canvas, this.composed, this.ratio] = [size, true, 1];
+    draw();
+    this.composed = composed;
+    renderer?.setPixelRatio(ratio);
+    this.resize(canvas);
   }
 
   /** Which looks are drawn, and where. */
@@ -79,6 +94,7 @@ export class Painter {
     const { renderer, stage, slices } = this;
     view.camera.updateMatrixWorld();
     stage.lights.update(view.camera, view.portrait(stage.subject()));
+    if (!renderer) return;
     for (const { side } of this.cells) {
       const hair = stage.hair[side];
       const surfaces = () => [...stage.bodies.values()].filter((body) => body.solid).map((body) => body.surface(side));
@@ -89,6 +105,10 @@ export class Painter {
   /** Adds drawings to the film and develops it. */
   *paint(view: OrbitCamera, { fraction, drawings }: Portion, moving: boolean): Work {
     const { renderer, film, looks, clear, cells, ratio } = this;
+    if (!renderer) {
+      this.aimAtAll(view);
+      return;
+    }
     const [width, height] = [this.canvas.width, this.canvas.height].map((length) => Math.floor(ratio * length));
     const pictures = looks.difference ? [cells.slice(0, 1), cells.slice(1)] : [cells];
     if (film.width !== width || film.height !== height) film.drawings = 0;
@@ -99,7 +119,7 @@ export class Painter {
       if (!begun) one.clear(width, height);
       for (let n = 0; n < drawings; n++) {
         one.open(renderer);
-        for (const cell of some) yield* this.expose(view, one, cell, fraction, moving ? 2 : 1);
+        for (const cell of some) yield* this.expose(renderer, view, one, cell, fraction, moving ? 2 : 1);
         yield* one.expose(renderer, this.slices);
       }
     }
@@ -109,13 +129,13 @@ export class Painter {
       (k ? this.second : film).show(renderer, seen, looks.difference ? this.difference.target(k, renderer) : null);
     });
     if (looks.difference) this.difference.draw(renderer);
-    else this.drawOverlays(view, cells);
+    else this.drawOverlays(renderer, view, cells);
     this.aimAtAll(view);
   }
 
   /** Draws a look once: a part of the hairs, another one in each drawing, and the pixels moved by a part of one. */
-  private *expose(view: OrbitCamera, film: Film, cell: Cell, fraction: number, stride: number): Work {
-    const { renderer, stage, slices, ratio } = this;
+  private *expose(renderer: WebGLRenderer, view: OrbitCamera, film: Film, cell: Cell, fraction: number, stride: number): Work {
+    const { stage, slices, ratio } = this;
     const { camera } = view;
     const number = film.drawings;
     // The sequence R2 of Roberts 2018 over a filter as wide as the path tracer's
@@ -177,30 +197,30 @@ export class Painter {
     target.scissorTest = true;
   }
 
-  private drawOverlays(view: OrbitCamera, cells: Cell[]): void {
-    const { renderer, stage } = this;
+  private drawOverlays(renderer: WebGLRenderer, view: OrbitCamera, cells: Cell[]): void {
+    const { stage } = this;
     const cell = cells.find(({ side }) => side === "a");
     if (!cell || !(stage.guides.shown || stage.painted.shown)) return;
     view.aim(cell);
-    this.window(cell);
+    this.window(renderer, cell);
     for (const body of stage.bodies.values()) body.turnTo("a");
     renderer.clearDepth();
     renderer.render(stage.casters, view.camera);
     if (stage.painted.shown) renderer.render(stage.painted.scene, view.camera);
     if (stage.guides.shown) renderer.render(stage.guides.scene, view.camera);
-    this.wholeWindow();
+    this.wholeWindow(renderer);
   }
 
   /** Sets the part of the canvas that a cell fills. */
-  private window({ box, canvas }: Cell): void {
+  private window(renderer: WebGLRenderer, { box, canvas }: Cell): void {
     const { height } = this.canvas;
-    this.renderer.setViewport(canvas.x, height - canvas.y - canvas.height, canvas.width, canvas.height);
-    this.renderer.setScissor(box.x, height - box.y - box.height, box.width, box.height);
+    renderer.setViewport(canvas.x, height - canvas.y - canvas.height, canvas.width, canvas.height);
+    renderer.setScissor(box.x, height - box.y - box.height, box.width, box.height);
   }
 
-  private wholeWindow(): void {
+  private wholeWindow(renderer: WebGLRenderer): void {
     const { width, height } = this.canvas;
-    this.renderer.setScissorTest(false);
-    this.renderer.setViewport(0, 0, width, height);
+    renderer.setScissorTest(false);
+    renderer.setViewport(0, 0, width, height);
   }
 }

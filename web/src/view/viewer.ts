@@ -2,8 +2,10 @@
 
 import type { BufferGeometry, PerspectiveCamera, Vector3, WebGLRenderer } from "three";
 import type { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { h } from "../dom";
 import type { Locks, Shared } from "../protocol";
 import type { Box, Size } from "./box";
+import { contextOf, drawsInSoftware, NO_PICTURE, writeNoPicture } from "./context";
 import type { Film } from "./film";
 import type { Hair } from "./hair";
 import type { Looks, Side } from "./looks";
@@ -39,7 +41,8 @@ export class Viewer {
   readonly hair: Record<Side, Hair>;
   readonly guides: Stage["guides"];
   readonly painted: Stage["painted"];
-  readonly renderer: WebGLRenderer;
+  readonly canvas = h("canvas", { tabIndex: 0, role: "img" });
+  readonly renderer: WebGLRenderer | null;
   readonly camera: PerspectiveCamera;
   readonly controls: OrbitControls;
   readonly looks: Looks;
@@ -50,7 +53,7 @@ export class Viewer {
   onDraw: (statistics: DrawStatistics) => void = () => {};
 
   private readonly film: Film;
-  private readonly clock: Clock;
+  private readonly clock: Clock | null;
   private readonly pace: Pace;
   /** Whether the camera has its place: the subject was framed once, or a look was given. */
   private placed = false;
@@ -71,26 +74,26 @@ export class Viewer {
   private drawn = 0;
 
   constructor(readonly element: HTMLElement) {
-    const software = drawsInSoftware();
+    const { canvas } = this;
+    const context = contextOf(canvas);
+    const software = !context || drawsInSoftware(context);
     this.pace = new Pace(software);
     this.stage = new Stage(() => this.invalidate(), software);
     this.hair = this.stage.hair;
     this.guides = this.stage.guides;
     this.painted = this.stage.painted;
-    this.painter = new Painter(this.stage, software);
+    this.painter = new Painter(this.stage, context, software);
     this.renderer = this.painter.renderer;
     this.looks = this.painter.looks;
     this.film = this.painter.film;
-    const canvas = this.renderer.domElement;
     element.append(canvas);
-    canvas.tabIndex = 0;
-    canvas.setAttribute("role", "img");
+    if (!context) element.append(h("p", { class: "undrawn", role: "status" }, NO_PICTURE));
     canvas.setAttribute("aria-label", "The groom. Arrow keys orbit the camera, plus and minus zoom, F frames all hair.");
     this.view = new OrbitCamera(canvas);
     this.camera = this.view.camera;
     this.controls = this.view.controls;
     this.controls.addEventListener("change", () => this.move());
-    this.clock = new Clock(this.renderer.getContext() as WebGL2RenderingContext, software);
+    this.clock = context && new Clock(context, software);
     new ResizeObserver(() => this.resize()).observe(element);
     this.resize();
   }
@@ -275,22 +278,15 @@ export class Viewer {
 
   /** Draws at a size, for a picture that is kept; then as before. A clear one has no backdrop. */
   drawAt(width: number, height: number, clear: boolean): HTMLCanvasElement {
-    const { renderer, painter, size } = this;
-    const ratio = renderer.getPixelRatio();
-    renderer.setPixelRatio(1);
-    renderer.setSize(width, height, false);
-    painter.keep();
-    const { composed } = painter;
-    painter.composed = true;
-    this.drawWhole();
-    painter.composed = composed;
-    const kept = document.createElement("canvas");
-    [kept.width, kept.height] = [width, height];
+    const { renderer, painter } = this;
+    const kept = h("canvas", { width, height });
     const context = kept.getContext("2d")!;
-    if (clear) context.putImageData(this.film.transparent(renderer), 0, 0);
-    else context.drawImage(renderer.domElement, 0, 0);
-    renderer.setPixelRatio(ratio);
-    renderer.setSize(size.width, size.height);
+    painter.keep({ width, height }, () => {
+      this.drawWhole();
+      if (!renderer) writeNoPicture(context);
+      else if (clear) context.putImageData(this.film.transparent(renderer), 0, 0);
+      else context.drawImage(renderer.domElement, 0, 0);
+    });
     this.invalidate();
     return kept;
   }
@@ -363,6 +359,12 @@ export class Viewer {
   /** Goes on with a picture. One of what moves is not cut: the camera is elsewhere in the next. took: the last slice [ms] */
   private advance(picture: Work<Drawn>, moving: boolean, took: number): void {
     const { clock, pace } = this;
+    if (!clock) {
+      complete(picture);
+      this.lacking = 0;
+      if (this.turntable) this.invalidate();
+      return;
+    }
     clock.begin();
     const step = moving ? { done: true as const, value: complete(picture) } : picture.next(took);
     this.rest = step.done ? null : picture;
@@ -386,7 +388,7 @@ export class Viewer {
   private resize(): void {
     const { painter, view, pace, size } = this;
     if (!size.width || !size.height) return;
-    this.renderer.setSize(size.width, size.height);
+    painter.resize(size);
     painter.scale(pace.scale);
     [pace.resolved, pace.hairs] = [painter.resolved(view), Math.max(this.hair.a.count, 1)];
     Object.assign(painter.slices, ALL_AT_ONCE);
@@ -394,13 +396,4 @@ export class Viewer {
     complete(painter.paint(view, pace.next(true), true)); // before the browser shows the emptied canvas
     this.invalidate();
   }
-}
-
-function drawsInSoftware(): boolean {
-  const gl = document.createElement("canvas").getContext("webgl2");
-  if (!gl) throw new Error("This browser has no WebGL 2; the review needs it.");
-  const info = gl.getExtension("WEBGL_debug_renderer_info");
-  const name = String(gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
-  gl.getExtension("WEBGL_lose_context")?.loseContext();
-  return /swiftshader|llvmpipe|software/i.test(name);
 }
