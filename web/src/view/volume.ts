@@ -303,11 +303,12 @@ class Coarse {
       }
     }
     this.fresh = false;
-    for (let i = 0; i < this.mean[3].length; i++) {
-      const luminance = (of: Float32Array[]) => 0.2126 * of[0][i] + 0.7152 * of[1][i] + 0.0722 * of[2][i];
-      this.mean[3][i] = luminance(this.mean);
-      for (let axis = 0; axis < 3; axis++) this.flow[axis][i] = luminance(this.flux.map((channel) => channel[axis]));
-    }
+    const luminance = (to: Float32Array, red: Float32Array, green: Float32Array, blue: Float32Array) => {
+      for (let i = 0; i < to.length; i++) to[i] = 0.2126 * red[i] + 0.7152 * green[i] + 0.0722 * blue[i];
+    };
+    luminance(this.mean[3], this.mean[0], this.mean[1], this.mean[2]);
+    const [red, green, blue] = this.flux;
+    for (let axis = 0; axis < 3; axis++) luminance(this.flow[axis], red[axis], green[axis], blue[axis]);
   }
 
   /** Matter and beams of the voxels, from the eight of the grid in each. */
@@ -323,16 +324,27 @@ class Coarse {
     const strength = beams.map((beam) => beam.strength.toArray());
     const from = beams.map(() => [0, 0, 0]);
     const near = beams.map(() => 0);
+    const corners = Array.from({ length: 8 }, (_, at) => (at & 1) + nx * (((at >> 1) & 1) + ny * (at >> 2)));
+    const empty = (first: number) => corners.every((corner) => hair[first + corner] === 0 && skin[first + corner] === 0);
     for (let k = 0, to = 0; k < cz; k++)
       for (let j = 0; j < cy; j++)
         for (let i = 0; i < cx; i++, to++) {
           if (i + j === 0) yield;
+          const first = 2 * i + nx * (2 * j + ny * 2 * k);
+          if (empty(first)) {
+            this.flow[3][to] = 1;
+            for (let c = 0; c < 3; c++) {
+              this.keep[c][to] = 1;
+              for (const values of [this.scatter[c], this.forward[c], this.source[c], ...this.stream[c]]) values[to] = 0;
+            }
+            continue;
+          }
           let [sigma, solid] = [0, 0];
           const [q, bare, mean] = [[0, 0, 0], [0, 0, 0], [0, 0, 0]];
           const arriving = [0, 0, 0, 0];
           const optical = [0, 0, 0, 0];
-          for (let corner = 0; corner < 8; corner++) {
-            const at = 2 * i + (corner & 1) + nx * (2 * j + ((corner >> 1) & 1) + ny * (2 * k + (corner >> 2)));
+          for (const corner of corners) {
+            const at = first + corner;
             sigma += hair[at] / 8;
             solid += skin[at] / 4;
             for (let c = 0; c < 3; c++) {
@@ -346,13 +358,6 @@ class Coarse {
             }
           }
           this.flow[3][to] = sigma > 0 ? Math.max(0, 1 - mean.reduce((sum, x) => sum + x * x, 0) / sigma ** 2) : 1;
-          if (sigma + solid === 0) {
-            for (let c = 0; c < 3; c++) {
-              this.keep[c][to] = 1;
-              for (const values of [this.scatter[c], this.forward[c], this.source[c], ...this.stream[c]]) values[to] = 0;
-            }
-            continue;
-          }
           beams.forEach(({ place, reach, radius }, l) => {
             const towards = [place.x, place.y, place.z];
             [i, j, k].forEach((at, axis) => (towards[axis] -= grid.origin.getComponent(axis) + (2 * at + 1) * grid.size));
