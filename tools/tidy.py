@@ -18,6 +18,9 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 CORE = ROOT / "src/ringlet"
 JOBS = 2
+# States that the analyser visits in a function at most. With 225,000, its own bound, half of the core takes 149 s instead
+# of 35, and of 101 faults put before its returns 52 are found instead of 53.
+NODES = 20_000
 
 
 def commands(build: Path) -> dict[str, dict[Path, str]]:
@@ -76,6 +79,7 @@ def main(build: Path) -> int:
     openmp = subprocess.check_output([os.environ.get("CXX", "c++"), "-print-file-name=include/omp.h"], text=True)
     tidy = [str(ROOT / ".venv/bin/clang-tidy"), "-quiet", "-p", str(folder), f"--config-file={ROOT / '.clang-tidy'}"]
     tidy += ["-extra-arg=-idirafter", f"-extra-arg={Path(openmp).parent}"]
+    tidy += [f"-extra-arg={word}" for word in ("-Xclang", "-analyzer-config", "-Xclang", f"max-nodes={NODES}")]
 
     def check(name: str) -> int:
         unit, files = folder / f"{name}.cpp", checked[name][1]
