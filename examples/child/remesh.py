@@ -53,10 +53,10 @@ def edges_of(triangles: Triangles) -> tuple[NDArray, NDArray]:
 
     Half-edge 3t + k runs from corner k to corner k + 1 of triangle t. The mesh is closed, so each edge has two.
     """
-    halves = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1).reshape(-1, 2)
-    keys = np.sort(halves, axis=1).astype(np.int64) @ np.array([triangles.max() + 1, 1])
-    order = np.argsort(keys, kind="stable").reshape(-1, 2)
-    return np.sort(halves[order[:, 0]], axis=1), order
+    start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+    low, high = np.minimum(start, end), np.maximum(start, end)
+    order = np.sort(np.argsort(low.astype(np.int64) * (triangles.max() + 1) + high).reshape(-1, 2), axis=1)
+    return np.stack([low, high], axis=1)[order[:, 0]], order
 
 
 def claimed(claims: list[NDArray], count: int) -> NDArray:
