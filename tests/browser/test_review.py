@@ -289,9 +289,8 @@ def test_regions_and_overlays_are_chosen_from_lists(opened: Any, folder: Path):
     review.choose("shape/0")
     review.show_all_settings()
     review.unfold("shape.0.mask")
-    mask = review.page.locator('[data-setting="shape.0.mask"] details').first
-    mask.evaluate("(details) => { details.open = true; }")
-    review.page.locator('[data-setting="shape.0.mask.region"] select').select_option("scalp", force=True)
+    review.page.locator('[data-setting="shape.0.mask"] summary', has_text="varies").click()
+    review.page.locator('[data-setting="shape.0.mask.region"] select').select_option("scalp")
     review.until("ringlet.model.documents.recipe.said.shape[0].mask?.region === 'scalp'")
     review.settled()
     plain = review.clear_picture()

@@ -1,4 +1,4 @@
-// Making elements in one expression.
+// Making elements in one expression, and what stands in them.
 
 type Attributes = Record<string, unknown>;
 type Child = Node | string | null | undefined | false;
@@ -19,6 +19,11 @@ export function h<K extends keyof HTMLElementTagNameMap>(
     ...children.filter((child): child is Node | string => child !== null && child !== undefined && child !== false),
   );
   return element;
+}
+
+/** A number of things, its thousands apart. An `Intl` for it would take longer than the rest of a first sight. */
+export function count(n: number): string {
+  return String(n).replace(/\B(?=(\d{3})+$)/g, "\u202f");
 }
 
 /** An icon of a few strokes in a box of 20 by 20. */

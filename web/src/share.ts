@@ -3,7 +3,7 @@
 import "./base.css";
 import "./share.css";
 import { decode } from "./codec";
-import { h, iconButton } from "./dom";
+import { count, h, iconButton } from "./dom";
 import type { Rig } from "./protocol";
 import type { Colour } from "./view/hair";
 import { Viewer } from "./view/viewer";
@@ -30,7 +30,6 @@ interface About {
 }
 
 const text = (id: string): string => document.getElementById(id)!.textContent ?? "";
-const count = (n: number): string => n.toLocaleString("en").replaceAll(",", "\u202f");
 
 class SharedLook {
   readonly viewer: Viewer;

@@ -55,10 +55,15 @@ export abstract class Field {
     return this.targets.some((target) => this.model.said(this.file, target) !== undefined);
   }
 
+  /** Whether a problem names it. */
+  get isWrong(): boolean {
+    return this.model.isWrong(this.file, this.place);
+  }
+
   /** Shows what the file says now. */
   update(): void {
     this.element.classList.toggle("said", this.isSaid);
-    this.element.classList.toggle("wrong", this.model.isWrong(this.file, this.place));
+    this.element.classList.toggle("wrong", this.isWrong);
     this.reset.toggleAttribute("hidden", !this.isSaid);
     this.show();
   }

@@ -4,10 +4,10 @@ import { h, iconButton } from "../dom";
 import { at, type File, type Model, type Place } from "../model";
 import type { Json } from "../protocol";
 import { Field } from "./field";
+import { Fold } from "./fold";
 import { makeField } from "./make_field";
 import { NumberInput } from "./number";
 import type { Typed } from "./quantity";
-import { RampField } from "./ramp_field";
 import { type Range, rounded, sliderRange } from "./range";
 import type { Setting } from "./schema";
 import { Slider } from "./slider";
@@ -20,8 +20,7 @@ export class NumberField extends Field {
   private usual: Range | null = null;
   private range: Range = { least: 0, most: 1, step: 0.01 };
   private more: HTMLElement | null = null;
-  private readonly folds: { element: HTMLElement; fields: Field[] }[] = [];
-  private readonly inner: Field[];
+  private readonly folds: { fold: Fold; settings: Setting[] }[] = [];
 
   constructor(model: Model, file: File, place: Place, setting: Setting) {
     super(model, file, place, setting);
@@ -40,16 +39,16 @@ export class NumberField extends Field {
         iconButton("dice", "New seed", () => this.send(Math.floor(Math.random() * 1e6), true)),
       );
     this.element.append(this.head(this.number.element), this.slider.element);
-    this.inner = setting.inner.map((one) => makeField(model, file, [...place, one.name], one));
-    if (!this.inner.length) return;
-    const ramps: Field[] = this.inner.filter((field) => field instanceof RampField);
-    const others = this.inner.filter((field) => !ramps.includes(field));
-    for (const [label, fields] of [
-      ["along the hair", ramps],
-      ["varies", others],
-    ] as const)
-      if (fields.length) this.folds.push({ element: foldOf(label, fields), fields });
-    this.more = h("div", { class: "folds" }, ...this.folds.map(({ element }) => element));
+    if (!setting.inner.length) return;
+    for (const [label, ramps] of [
+      ["along the hair", true],
+      ["varies", false],
+    ] as const) {
+      const settings = setting.inner.filter(({ kind }) => (kind === "ramp") === ramps);
+      const fields = () => settings.map((one) => makeField(model, file, [...place, one.name], one));
+      if (settings.length) this.folds.push({ fold: new Fold("varies", label, fields), settings });
+    }
+    this.more = h("div", { class: "folds" }, ...this.folds.map(({ fold }) => fold.element));
     this.element.append(this.more);
   }
 
@@ -96,8 +95,11 @@ export class NumberField extends Field {
   }
 
   protected show(): void {
-    for (const field of this.inner) field.update();
-    for (const { element, fields } of this.folds) element.classList.toggle("said", fields.some((field) => field.isSaid));
+    for (const { fold, settings } of this.folds) {
+      const said = settings.some(({ name }) => this.model.said(this.file, [...this.place, name]) !== undefined);
+      fold.element.classList.toggle("said", said);
+      fold.update();
+    }
     this.more?.toggleAttribute("hidden", this.locks.length > 0);
     if (this.slider.held) return;
     const { factor, unit } = this.shown;
@@ -123,8 +125,4 @@ export class NumberField extends Field {
       this.range.step,
     );
   }
-}
-
-function foldOf(label: string, fields: Field[]): HTMLElement {
-  return h("details", { class: "varies" }, h("summary", {}, label), ...fields.map((field) => field.element));
 }

@@ -41,10 +41,12 @@ export class PresenterPointer {
 
   /** Puts the pointer where its place is seen from this camera. */
   place(): void {
+    this.element.hidden = !this.at;
+    if (!this.at) return;
     const { camera, size } = this.viewer;
-    const seen = this.at && onScreen(this.at, camera, size);
-    this.element.hidden = !seen || seen.x < 0 || seen.y < 0 || seen.x > size.width || seen.y > size.height;
-    if (seen) this.element.style.transform = `translate(${seen.x - 2}px, ${seen.y - 2}px)`;
+    const { x, y } = onScreen(this.at, camera, size);
+    this.element.hidden = x < 0 || y < 0 || x > size.width || y > size.height;
+    this.element.style.transform = `translate(${x - 2}px, ${y - 2}px)`;
   }
 
   private moved(event: PointerEvent | null): void {

@@ -27,7 +27,8 @@ export class Settings {
 
   constructor(private readonly model: Model) {
     this.search = new SettingSearch(model, (name) => this.reveal(name), () => this.sift());
-    for (const topic of ["document", "chosen", "role", "names"] as const) model.on(topic, () => this.update());
+    for (const topic of ["document", "chosen", "names"] as const) model.on(topic, () => this.update());
+    model.on("role", () => this.element.toggleAttribute("inert", !model.role.leads));
     this.more.addEventListener("click", () => {
       if (!this.opened.delete(this.stage)) this.opened.add(this.stage);
       this.sift();
@@ -46,7 +47,7 @@ export class Settings {
   }
 
   update(): void {
-    const { welcome, chosen, documents, role } = this.model;
+    const { welcome, chosen, documents } = this.model;
     const document = documents[chosen.file];
     this.element.toggleAttribute("hidden", !document);
     if (!welcome || !document) return;
@@ -77,8 +78,6 @@ export class Settings {
       );
       this.element.scrollTop = 0;
     }
-    for (const field of this.fields) field.update();
-    this.element.toggleAttribute("inert", !role.leads);
     this.sift();
   }
 
@@ -97,19 +96,21 @@ export class Settings {
     );
   }
 
-  /** Shows the fields of first sight, or all. */
+  /** Shows the fields of first sight, or all, with what the file says now. */
   private sift(): void {
     this.element.classList.toggle("searching", this.search.on);
     const all = this.opened.has(this.stage) || this.fields.length <= FEW + 1;
     let shown = 0;
     this.fields.forEach((field, k) => {
       const { name } = field.setting;
-      if (field.isSaid || field.element.classList.contains("wrong")) this.kept.add(name);
+      if (field.isSaid || field.isWrong) this.kept.add(name);
       const pinned = isPinned(this.kind, name);
       this.tools.get(field)!.showPinned(pinned);
       const visible = all || k < FEW || pinned || this.kept.has(name);
       field.element.toggleAttribute("hidden", this.search.on || !visible);
-      if (visible) shown++;
+      if (!visible) return;
+      field.update();
+      shown++;
     });
     for (const [field, tools] of this.tools) tools.showFold(shown > FULL, this.unfolded.has(field.setting.name));
     const hidden = this.fields.length - shown;

@@ -1,6 +1,6 @@
 // Numbers in sight, and a line for what went wrong.
 
-import { h } from "../dom";
+import { count, h } from "../dom";
 import type { Model } from "../model";
 import type { Json } from "../protocol";
 import type { DrawStatistics } from "../view/viewer";
@@ -69,7 +69,6 @@ export class Status {
   }
 }
 
-const count = (n: number) => n.toLocaleString("en").replaceAll(",", "\u202f");
 
 const MOST_NOTICES = 2;
 

@@ -4,12 +4,13 @@ import { h, iconButton } from "../dom";
 import type { File, Model, Place } from "../model";
 import type { Json } from "../protocol";
 import { Field } from "./field";
+import { Fold } from "./fold";
 import { makeField } from "./make_field";
 import type { Setting } from "./schema";
 
 export class TableField extends Field {
   private readonly box = h("div", { class: "tables" });
-  private entries: Field[][] = [];
+  private entries: Fold[] = [];
 
   constructor(model: Model, file: File, place: Place, setting: Setting) {
     super(model, file, place, setting);
@@ -36,26 +37,18 @@ export class TableField extends Field {
   protected show(): void {
     const count = this.isList ? ((this.value as Json[] | undefined) ?? []).length : 1;
     if (count !== this.entries.length) {
-      this.entries = Array.from({ length: count }, (_, k) =>
-        this.setting.inner.map((one) => {
-          const place = this.isList ? [...this.place, k, one.name] : [...this.place, one.name];
-          return makeField(this.model, this.file, place, one);
-        }),
-      );
-      this.box.replaceChildren(
-        ...this.entries.map((fields, k) => {
-          const title = this.isList ? `${this.setting.label} ${k + 1}` : this.setting.label;
-          const details = h("details", { class: "table" }, h("summary", {}, title));
-          details.append(...fields.map((field) => field.element));
-          if (this.isList)
-            details.append(
-              h("button", { type: "button", class: "quiet", onclick: () => this.take(k) }, `Remove ${title}`),
-            );
-          return details;
-        }),
-      );
+      this.entries = Array.from({ length: count }, (_, k) => this.entry(k));
+      this.box.replaceChildren(...this.entries.map(({ element }) => element));
     }
-    for (const field of this.entries.flat()) field.update();
+    for (const fold of this.entries) fold.update();
+  }
+
+  private entry(k: number): Fold {
+    const title = this.isList ? `${this.setting.label} ${k + 1}` : this.setting.label;
+    const place = this.isList ? [...this.place, k] : this.place;
+    const fields = () => this.setting.inner.map((one) => makeField(this.model, this.file, [...place, one.name], one));
+    const remove = h("button", { type: "button", class: "quiet", onclick: () => this.take(k) }, `Remove ${title}`);
+    return new Fold("table", title, fields, this.isList ? remove : undefined);
   }
 
   private take(index: number): void {
