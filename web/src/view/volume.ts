@@ -406,6 +406,11 @@ class Coarse {
             let index = a * strides[u] + b * strides[v] + (way < 0 ? (counts[axis] - 1) * strides[axis] : 0);
             let radiance = sky;
             for (let m = 0; m < counts[axis]; m++, index += stride) {
+              if (keep[index] === 1) {
+                sum[index] += radiance; // nothing is there, as in most voxels
+                net[index] += way * radiance;
+                continue;
+              }
               const even = scatter[index] * (mean[index] + source[index]);
               const sent = even + way * 3 * forward[index] * (flux[index] + stream[index]);
               const after = radiance * keep[index] + (1 - keep[index]) * Math.max(sent, 0);
@@ -465,7 +470,7 @@ function pack(values: Four): Uint16Array {
   const data = new Uint16Array(4 * values[0].length);
   for (let c = 0; c < 4; c++) {
     const from = values[c];
-    for (let i = 0; i < from.length; i++) data[4 * i + c] = DataUtils.toHalfFloat(from[i]);
+    for (let i = 0; i < from.length; i++) if (from[i] !== 0) data[4 * i + c] = DataUtils.toHalfFloat(from[i]);
   }
   return data;
 }
