@@ -93,8 +93,8 @@ def test_the_page_loads_no_external_resource(opened: Any):
 
 
 def test_pictures_and_movies_are_saved(opened: Any):
-    review: Review = opened(viewport={"width": 800, "height": 500}, pixels=1, live=True)
-    for size, clear in (("", False), ("2048 × 2048", True)):
+    review: Review = opened(viewport={"width": 800, "height": 500}, pixels=0.5, live=True)
+    for size, clear in (("", False), ("1080 × 1920", True)):
         review.page.get_by_role("button", name="Save picture").click()
         review.page.get_by_label("Size in pixels").select_option(size)
         review.page.get_by_label("Transparent background").set_checked(clear)
@@ -102,10 +102,10 @@ def test_pictures_and_movies_are_saved(opened: Any):
             review.page.get_by_role("dialog").get_by_role("button", name="Save", exact=True).click()
         assert picture.value.suggested_filename == "small.png"
         saved = Image.open(picture.value.path())
-        assert saved.size == ((2048, 2048) if clear else (800, 500))
+        assert saved.size == ((1080, 1920) if clear else (800, 500))
         alpha = np.asarray(saved.convert("RGBA"))[:, :, 3]
-        assert (alpha[0, 0] < 10 and alpha[1000, 1000] > 245) if clear else alpha.min() == 255
-    review.until("ringlet.viewer.canvas.width === 800")  # that of the page again, once the picture rests
+        assert (alpha[0, 0] < 10 and alpha[960, 540] > 245) if clear else alpha.min() == 255
+    review.until("ringlet.viewer.canvas.width === 400")  # that of the page again, once the picture rests
     film = review.page.get_by_label("Record a movie")
     began = time.monotonic()
     film.click()

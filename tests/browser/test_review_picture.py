@@ -15,7 +15,7 @@ from PIL import Image
 from review import Review
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-SIZE, SAMPLES, PATCH = 240, 32, 12
+SIZE, SAMPLES, PATCH = 160, 32, 8
 # Bounds on percentiles of the luminance of patches. The darkest are gaps between curls, finer than a voxel, which are
 # too bright, and what light from the skin reaches, which is too dark.
 BOUNDS = {5: 0.15, 25: 0.1, 50: 0.07, 75: 0.07, 95: 0.05}

@@ -6,10 +6,12 @@ accepts connections, and ``{"kill": PID}`` with ``{}`` when that server has ende
 
 from __future__ import annotations
 
+import gc
 import json
 import os
 import signal
 import sys
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
@@ -22,6 +24,9 @@ def main() -> None:
 
     schemas()
     ringlet.view  # noqa: B018  imports the server
+    for part in ("http.auto", "http.h11_impl", "websockets.auto"):  # which it loads when it starts
+        import_module(f"uvicorn.protocols.{part}")
+    gc.freeze()  # a collection in a server would copy the pages of all that
     assert len(list(Path("/proc/self/task").iterdir())) == 1, "a process with threads cannot be forked safely"
     servers: set[int] = set()
     for line in sys.stdin:
