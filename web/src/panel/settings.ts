@@ -57,6 +57,7 @@ export class Settings {
     const settings = schemas.settings(chosen.place, values).filter((setting) => !locks.length || setting.perLock);
     const built = JSON.stringify([chosen, locks, settings.map((setting) => [setting.name, setting.kind])]);
     if (built !== this.built) {
+      if (this.built) this.element.scrollTop = 0; // which lays the page out
       this.built = built;
       this.kept.clear();
       this.unfolded.clear();
@@ -76,7 +77,6 @@ export class Settings {
         h("div", { class: "fields" }, ...this.fields.map((field) => field.element)),
         this.more,
       );
-      this.element.scrollTop = 0;
     }
     this.sift();
   }
