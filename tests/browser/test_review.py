@@ -117,7 +117,7 @@ def test_a_ramp_is_edited_by_its_points(opened: Any):
     review.page.mouse.down()
     review.page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.8 * box["height"], steps=3)
     review.page.mouse.up()
-    review.until("ringlet.model.documents.recipe.dirty")
+    review.answered()
     width = tomllib.loads(review.text())["curl"]["width"]
     assert width["value"] == 1.0 and len(width["ramp"]) == 3
     assert abs(width["ramp"][1][0] - 0.5) < 0.05 and width["ramp"][1][1] < 0.5
