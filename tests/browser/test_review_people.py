@@ -116,13 +116,14 @@ def test_who_asks_to_edit_is_named_and_gets_an_answer(pair: tuple[Review, Review
     two.page.keyboard.press("Escape")
     two.page.get_by_role("button", name="Ask to edit").click()
     assert two.page.get_by_role("button", name="Asked to edit").is_disabled()
-    assert "Bo asks to edit" in one.page.locator(".questions").inner_text()
+    one.page.locator(".questions", has_text="Bo asks to edit").wait_for()
     one.page.get_by_role("button", name="Not now").click()
     two.page.locator(".notice", has_text="Guest 1 goes on editing").wait_for()
     two.page.get_by_role("button", name="Ask to edit").click()
     one.page.get_by_role("button", name="Hand over").click()
     one.page.locator(".notice", has_text="Bo can edit now").wait_for()
-    assert two.get("ringlet.model.role.leads") and not one.get("ringlet.model.role.leads")
+    two.until("ringlet.model.role.leads")
+    one.until("!ringlet.model.role.leads")
     assert one.page.locator(".settings[inert]").count() == 1
 
 

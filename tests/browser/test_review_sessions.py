@@ -31,9 +31,10 @@ def test_one_page_edits_and_the_other_follows(opened: Any, serve: Any):
     two.page.mouse.down()
     two.page.mouse.move(540, 500, steps=2)
     two.page.mouse.up()
-    assert two.page.get_by_role("button", name="Follow Guest 1").is_visible()
+    two.page.get_by_role("button", name="Follow Guest 1").wait_for()
     for answer, leads in (("Not now", False), ("Hand over", True)):
         two.page.get_by_role("button", name="Ask to edit").click()
+        two.until("ringlet.model.role.asks")
         one.page.get_by_role("button", name=answer).click()
         two.until("!ringlet.model.role.asks")
         assert two.get("ringlet.model.role.leads") == leads

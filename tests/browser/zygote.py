@@ -18,11 +18,13 @@ from urllib.parse import urlsplit
 
 
 def main() -> None:
+    from ringlet.viewer import edit_lock
     from ringlet.viewer.session import schemas
 
     import ringlet
 
     schemas()
+    edit_lock.ANSWER_AFTER = 3600.0  # pages answer as the test says, however slow the machine
     ringlet.view  # noqa: B018  imports the server
     for part in ("http.auto", "http.h11_impl", "websockets.auto"):  # which it loads when it starts
         import_module(f"uvicorn.protocols.{part}")
