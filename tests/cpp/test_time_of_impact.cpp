@@ -50,6 +50,20 @@ BOOST_AUTO_TEST_CASE(a_head_on_impact_happens_when_the_gap_is_used_up) {
     }
 }
 
+// Far away positions round to 10⁻¹³ m, so that each place has its own last bits.
+BOOST_AUTO_TEST_CASE(rounding_changes_the_time_of_impact_by_no_more_than_itself) {
+    const Four edges = {Vec3(-1, 0, 1), Vec3(1, 0, 1), Vec3(0, -1, 0), Vec3(0, 1, 0)};
+    const Vec3 down(0, 0, -2), none = Vec3::Zero();
+    double first = 1.0, last = 0.0;
+    for (int k = 0; k < 100; ++k) {
+        Four x = edges;
+        for (Vec3 &at : x) at += Vec3(10.0 * k, 7.0 * k, 3.3 * k);
+        const double t = toi(true, x, {down, down, none, none}, 0.2);
+        first = std::min(first, t), last = std::max(last, t);
+    }
+    BOOST_TEST(last - first < 1e-11);
+}
+
 BOOST_AUTO_TEST_CASE(sliding_past_and_separating_and_resting_pairs_have_no_impact) {
     const Four x = {Vec3(-1, 0, 1e-6), Vec3(1, 0, 1e-6), Vec3(0, -1, 0), Vec3(0, 1, 0)};
     const Vec3 along(50, 30, 0), up(0, 0, 3), none = Vec3::Zero();

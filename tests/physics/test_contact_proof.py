@@ -63,7 +63,7 @@ def test_sticking_contact_creeps_below_its_bound_and_stops(load):
     assert abs(late - soon) < 0.01 * soon
 
 
-@pytest.mark.parametrize(("name", "pace", "exact"), [("chain_of_loops", 1.0, 15), ("hooked_strands", 0.02, 12)])
+@pytest.mark.parametrize(("name", "pace", "exact"), [("chain_of_loops", 1.0, 60), ("hooked_strands", 0.02, 12)])
 def test_contact_is_invariant_under_uniform_motion(name, pace, exact):
     """Interlocked strands at rest and at 100 m/s, air included; steps converge, so only rounding differs.
 

@@ -7,11 +7,12 @@
 
 namespace ringlet::ccd {
 
-// Additive conservative advancement (time_of_impact.h), as fractions of gap − minimum separation.
-inline constexpr double advancement_rest = 0.1; // left by one advancement
-inline constexpr double convergence = 0.01;     // where it stops, of the value at the start
-inline constexpr double zero_distance = 1e-100; // [m]; below it a pair has no separating direction
-inline constexpr int max_advancements = 200;    // per pair
+// Additive conservative advancement (time_of_impact.h), as fractions of gap − minimum separation. A head-on approach stops
+// after two advancements: were what they leave the limit itself, rounding would decide whether there is a third.
+inline constexpr double advancement_rest = 0.09; // left by one advancement
+inline constexpr double convergence = 0.01;      // where it stops, of the value at the start
+inline constexpr double zero_distance = 1e-100;  // [m]; below it a pair has no separating direction
+inline constexpr int max_advancements = 200;     // per pair
 
 // Minimum separation: the lesser of the first two, but at least the third, and in any case at most the fourth.
 inline constexpr double separation_of_d_hat = collision::impact_distance; // of the activation distance

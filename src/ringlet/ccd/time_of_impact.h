@@ -2,9 +2,9 @@
 //
 // For any unit vector n and time t, the distance is at least the minimum over (i, j) of n·(x_i − x_j) + t n·(p_i − p_j).
 // Vertices i are of one primitive and j of the other, so this is the gap of their projections onto n. Each advancement takes n
-// between the closest points and moves t to where this bound leaves a tenth of the distance that may close. The bound holds for
-// every n, so rounding in the closest points is harmless. Only differences of displacements occur, so a shared motion has no
-// effect.
+// between the closest points and moves t to where this bound leaves a small part of the distance that may close. The bound
+// holds for every n, so rounding in the closest points is harmless. Only differences of displacements occur, so a shared motion
+// has no effect.
 #pragma once
 
 #include "ringlet/ccd/settings.h"
