@@ -49,7 +49,7 @@ struct Crowd {
     CcdReport resolve(std::vector<Vec3> &resolved) const {
         PairCache pairs(mesh);
         resolved = end;
-        AdvectedMove move(connected(), pairs, start, resolved, {}, {});
+        AdvectedMove move(connected(), pairs, start, resolved);
         resolve_impact_zones({View<double>(mass), [](int, const Vec3 &point) { return point; }}, move);
         truncate_locally(move);
         return move.report();

@@ -157,9 +157,8 @@ struct SpringScene {
 
     // The pairs that touch at the positions.
     std::vector<ContactPair> touching() {
-        configuration->pairs.update_bounds({configuration->positions, configuration->positions},
-                                           {.margin = 0.0, .max_path = 0.0});
-        return configuration->pairs.contact_pairs(configuration->positions);
+        configuration->pairs.clear();
+        return configuration->contact_pairs();
     }
 
     SolverEffort step(double dt, const Vec3 &gravity = Vec3::Zero(), int iterations = 50) {
@@ -168,8 +167,6 @@ struct SpringScene {
         AlignedVector x = unknowns();
         Refinement refinement(*objective);
         SceneReport report;
-        PlannedMove stay{start, {}};
-        configuration->limit(stay, {}, report);
         Newton newton(table, *objective, *system, *configuration, *stiffness);
         const SolverEffort effort =
             newton.minimise(start, {.iterations = iterations, .tolerance = 1e-12, .linear = {}}, refinement, x, report);

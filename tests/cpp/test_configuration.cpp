@@ -2,6 +2,7 @@
 #include "ringlet/solver/path_limiter.h"
 #include "spring_masses.h"
 
+#include <Eigen/Geometry>
 #include <boost/test/unit_test.hpp>
 
 using namespace ringlet;
@@ -36,17 +37,20 @@ BOOST_AUTO_TEST_CASE(a_limited_move_ends_above_the_surface_and_leaves_others_alo
     BOOST_TEST((scene.configuration->positions == move.to));
 }
 
-BOOST_AUTO_TEST_CASE(recorded_positions_begin_with_the_start_and_follow_each_move) {
+BOOST_AUTO_TEST_CASE(recorded_positions_begin_with_the_frame_of_the_step_and_follow_each_move) {
     SpringScene scene = above_a_triangle();
     scene.configuration->record(true);
-    scene.configuration->begin_record();
-    PlannedMove move{scene.positions, {}};
+    const RigidMotion turn{Eigen::AngleAxisd(0.5, Vec3::UnitZ()).toRotationMatrix(), Vec3::Zero(), Vec3(0.0, 1.0, 0.0)};
+    scene.configuration->begin_step(turn);
+    std::vector<Vec3> begin;
+    for (const Vec3 &x : scene.positions) begin.push_back(turn(x));
+    PlannedMove move{begin, {}};
     move.to[1].x() += 0.1;
     SceneReport report;
     scene.configuration->limit(move, {}, report);
     scene.configuration->commit(move.to);
     BOOST_REQUIRE(scene.configuration->recorded().size() == 2u);
-    BOOST_TEST((scene.configuration->recorded()[0] == scene.positions));
+    BOOST_TEST((scene.configuration->recorded()[0] == begin));
     BOOST_TEST((scene.configuration->recorded()[1] == move.to));
 }
 

@@ -1,6 +1,8 @@
 // The pair cache against one that has no motion bounds.
 #include "collision_scene.h"
+#include "ringlet/geometry/rigid_motion.h"
 
+#include <Eigen/Geometry>
 #include <boost/test/unit_test.hpp>
 
 using namespace ringlet;
@@ -120,17 +122,43 @@ BOOST_AUTO_TEST_CASE(pairs_cached_for_one_move_are_exact_on_it_and_serve_no_othe
     BOOST_TEST(cache.size() < lasting.size());
     RigidMotion turn{Eigen::AngleAxisd(0.5, Vec3::UnitY()).toRotationMatrix(), now[0], now[1]};
     std::vector<Vec3> to = now;
-    for (Vec3 &x : to) x = turn(x) + scene.anywhere(0.0001);
-    cache.begin_rigid_move({now, to}, turn, mesh.object);
-    cache.commit_rigid_move(now, to);
-    PairCache uncached(mesh);
-    uncached.begin_move({now, to});
-    uncached.commit_move(now, to);
+    for (Vec3 &x : to) x = turn(x);
+    for (PairCache *pairs : {&cache, &lasting}) pairs->move_rigidly(now, to);
     now = to;
-    BOOST_TEST(contacts(cache, now).size() > 10);
-    BOOST_TEST((contacts(cache, now) == contacts(uncached, now)));
     go(0.01, true);
     BOOST_TEST(cache.size() == lasting.size());
+}
+
+// Everything turns from step to step; then some vertices move little, and some do not stay near.
+BOOST_AUTO_TEST_CASE(a_rigid_motion_of_everything_changes_no_impact_and_no_contact) {
+    CollisionScene scene(7, 0.0);
+    const CollisionMesh &mesh = scene.mesh;
+    PairCache cache(mesh);
+    std::vector<Vec3> now = scene.start, to(now.size());
+    cache.update_bounds({now, now}, {.margin = 0.01, .max_path = 0.0});
+    for (int step = 0; step < 8; ++step) {
+        const RigidMotion turn{Eigen::AngleAxisd(0.5, Vec3(1.0, 2.0, 2.0) / 3.0).toRotationMatrix(), now[0], now[1]};
+        for (size_t v = 0; v < now.size(); ++v) to[v] = turn(now[v]);
+        cache.move_rigidly(now, to);
+        now = to;
+        for (size_t v = 0; v < now.size(); ++v) to[v] = now[v] + scene.anywhere(v % 10 == 0 ? 0.05 : 0.0005);
+        PairCache uncached(mesh);
+        for (PairCache *pairs : {&cache, &uncached}) pairs->begin_move({now, to});
+        BOOST_TEST(impacts(mesh, cache, now, to).size() > 10);
+        BOOST_TEST((impacts(mesh, cache, now, to) == impacts(mesh, uncached, now, to)));
+        BOOST_TEST(cache.transient_pairs().size() < uncached.transient_pairs().size());
+        for (PairCache *pairs : {&cache, &uncached}) pairs->commit_move(now, to);
+        now = to;
+        BOOST_TEST(contacts(cache, now).size() > 10);
+        BOOST_TEST((contacts(cache, now) == contacts(uncached, now)));
+        for (size_t v = 0; v < now.size(); ++v)
+            if (mesh.moves[v]) to[v] += scene.anywhere(v % 2 == 0 ? 0.002 : 0.01);
+        cache.update_bounds({now, to}, {.margin = 0.004, .max_path = 0.1});
+        for (PairCache *pairs : {&cache, &uncached}) pairs->begin_move({now, to});
+        BOOST_TEST((impacts(mesh, cache, now, to) == impacts(mesh, uncached, now, to)));
+        cache.commit_move(now, to);
+        now = to;
+    }
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from coils import helix
+from coils import helix, rotation
 from contact_scenes import hooked_strands
 from crossings import Judge
 from linking import linking
@@ -27,3 +27,14 @@ def test_ipctk_detects_strands_that_pass_through_each_other():
     assert judge.crossings(before, before) == 0
     assert judge.crossings(before, after) > 0
     assert judge.crossings(before, before + [0, 0.05, 0]) == 0
+
+
+def test_a_path_begins_where_everything_has_moved_rigidly():
+    """Else how it got there is judged like any move."""
+    trial = hooked_strands()
+    judge, before = Judge(trial.scene), trial.scene.positions.copy()
+    turned = before @ rotation([0, 1, 1], 2.0).T
+    after = before.copy()
+    after[: len(after) // 2] += [0, 0.05, 0]
+    assert judge.crossings_of_step(before, [turned, turned]) == 0
+    assert judge.crossings_of_step(before, [after, after]) > 0

@@ -1,7 +1,10 @@
 """An independent judge of motion without intersections: continuous collision detection by ipctk."""
 
+import itertools
+
 import ipctk
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 
 class Judge:
@@ -53,7 +56,17 @@ class Judge:
             for pair in (*pairs.ee_candidates, *pairs.fv_candidates)
         )
 
+    def crossings_of_step(self, before, path):
+        """Number of pairs that collide on the moves of a step that began at ``before``, shape (n, 3) [m].
 
-def crossings_of(scene, judge):
-    """Number of pairs that collide on the moves of a scene's last step, which it has recorded."""
-    return sum(judge.crossings(*move) for move in zip(scene.path[:-1], scene.path[1:], strict=True))
+        Its recorded path begins where everything has moved rigidly, or that is judged as a move.
+        """
+        moves = path if is_rigid(before, path[0]) else [before, *path]
+        return sum(self.crossings(*move) for move in itertools.pairwise(moves))
+
+
+def is_rigid(before, after):
+    """Whether all positions, shape (n, 3) [m], make one rigid motion."""
+    before, after = (x - x.mean(axis=0) for x in (before, after))
+    rotation, _ = Rotation.align_vectors(after, before)
+    return np.abs(rotation.apply(before) - after).max() < 1e-9

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -63,10 +62,10 @@ def judged(motion, frames: int | None = None, every: int = 1) -> Iterator[Judged
         before, penetrating = penetrating, motion.scene.memory["penetrating_vertices"]
         assert np.isin(penetrating, before).all(), f"frame {k}: a vertex entered a body"
         judge.exclude(penetrating)
+        start = motion.scene.positions.copy()
         statistics = motion.advance(begin, begin + 1)
         assert np.isfinite(motion.scene.positions).all(), f"frame {k}: a position is not finite"
-        moves = itertools.pairwise(motion.scene.path) if is_judged else ()
-        crossings = sum(judge.crossings(*move) for move in moves) if is_judged else None
+        crossings = judge.crossings_of_step(start, motion.scene.path) if is_judged else None
         yield Judged(crossings, statistics, strained(motion))
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from coils import helix
-from crossings import Judge, crossings_of
+from crossings import Judge
 from numpy.typing import NDArray
 from surfaces import sphere
 
@@ -40,14 +40,14 @@ def play(scene: Scene, motion, frames: int, newton: int, after: int = 0) -> Play
     scene.record()
     for frame in range(after + 1, frames + 1):
         targets, bodies = motion(frame)
-        before = time.perf_counter()
+        start, before = scene.positions.copy(), time.perf_counter()
         report, of_strands = scene.step(targets, FRAME, bodies=bodies, gravity=GRAVITY, solver=Solver(newton=newton))
         played.seconds.append(time.perf_counter() - before)
         played.positions.append(scene.strands.positions.copy())
         played.lag.append(report["lag"])
         played.stretch.append(float(of_strands["max_stretch"].max()))
         played.speed.append(float(np.abs(scene.strands.velocities).max()))
-        played.crossings += crossings_of(scene, judge)
+        played.crossings += judge.crossings_of_step(start, scene.path)
     return played
 
 

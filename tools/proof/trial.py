@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
@@ -114,11 +113,12 @@ def judged_run(trial: Trial, newton: int = 5) -> Outcome:
     scene.record()
     links, crossings, stretch, finite, reports = trial.links(), 0, 1.0, True, []
     for k in range(1, trial.steps + 1):
+        before = scene.positions.copy()
         reports.append(trial.step(k, solver))
         finite = bool(np.isfinite(scene.path).all() and np.isfinite(scene.positions).all())
         if not finite:
             break
-        crossings += sum(judge.crossings(*move) for move in itertools.pairwise(scene.path))
+        crossings += judge.crossings_of_step(before, scene.path)
         stretch = max(stretch, trial.stretch())
     return Outcome(
         crossings,

@@ -117,7 +117,8 @@ class Scene:
     def path(self) -> NDArray[np.float64]:
         """Positions [m] at the start and after each move of the last step, shape (k, n, 3); needs ``record()``.
 
-        There is no intersection while every vertex moves straight from one to the next.
+        The first are those of the start after a rigid motion of everything, to the frame of the step's end. There is no
+        intersection while every vertex moves straight from one to the next.
         """
         return self._core.path
 

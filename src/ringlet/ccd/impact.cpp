@@ -9,13 +9,6 @@
 namespace ringlet {
 namespace {
 
-template <size_t N, size_t M> bool share_motion(View<int> rigid, const std::array<int, N> &a, const std::array<int, M> &b) {
-    bool same = rigid[a[0]] >= 0;
-    for (const int v : a) same &= rigid[v] == rigid[a[0]];
-    for (const int v : b) same &= rigid[v] == rigid[a[0]];
-    return same;
-}
-
 template <size_t N, size_t M>
 double time_of_impact(CandidatePair &pair, const std::array<int, N> &a, const std::array<int, M> &b, View<Vec3> start,
                       View<Vec3> end) {
@@ -41,10 +34,9 @@ double time_of_impact(const CollisionMesh &mesh, CandidatePair &pair, View<Vec3>
 }
 
 std::vector<Impact> find_impacts(const CollisionMesh &mesh, const std::vector<CandidatePair *> &pairs, View<Vec3> start,
-                                 View<Vec3> end, View<int> rigid) {
+                                 View<Vec3> end) {
     return collect<Impact>(int(pairs.size()), [&](int k, std::vector<Impact> &impacts) {
         with_vertices(mesh, *pairs[k], [&](const auto &a, const auto &b) {
-            if (!rigid.empty() && share_motion(rigid, a, b)) return;
             const double toi = time_of_impact(*pairs[k], a, b, start, end);
             if (toi > 1.0) return;
             impacts.push_back({{}, toi, pairs[k]->min_gap < ccd::separation_of_d_hat * pairs[k]->d_hat});

@@ -18,9 +18,9 @@ struct Impact {
 // pair's lower bound on the gap decides nothing, the gap at the start is measured and becomes the bound.
 double time_of_impact(const CollisionMesh &mesh, CandidatePair &pair, View<Vec3> start, View<Vec3> end);
 
-// In the order of the pairs. Vertices with one number ≥ 0 in `rigid` share an affine motion and have no impacts.
+// In the order of the pairs.
 std::vector<Impact> find_impacts(const CollisionMesh &mesh, const std::vector<CandidatePair *> &pairs, View<Vec3> start,
-                                 View<Vec3> end, View<int> rigid = {});
+                                 View<Vec3> end);
 
 // Marks the moving vertices of impacts.
 void mark_vertices(const CollisionMesh &mesh, const std::vector<Impact> &impacts, std::vector<unsigned char> &marked);

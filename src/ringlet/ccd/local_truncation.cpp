@@ -34,7 +34,6 @@ void truncate_locally(AdvectedMove &move, View<unsigned char> whole) {
     const CollisionMesh &mesh = move.connected.mesh;
     std::vector<int> strands(move.connected.strands.size() - 1);
     std::iota(strands.begin(), strands.end(), 0);
-    std::vector<unsigned char> stays(move.end.size(), 0);
     for (int round = 0; !move.impacts().empty(); ++round)
         move.round([&](const std::vector<Impact> &impacts) {
             std::vector<Correction> corrections(move.end.size());
@@ -48,19 +47,13 @@ void truncate_locally(AdvectedMove &move, View<unsigned char> whole) {
                 }
             spread_over_objects(mesh, whole, corrections);
             if (round >= ccd::vertex_rounds) mark_objects(mesh, vertices, round >= ccd::object_rounds, corrections);
-            for (size_t v = 0; v < corrections.size(); ++v)
-                if (corrections[v].weight > 0.0) corrections[v].motion = move.motion(move.start[v]) - move.start[v];
             spread_correction(move.connected, move.start, move.end, {ccd::max_strain, ccd::max_strain}, strands, corrections);
             for (size_t v = 0; v < corrections.size(); ++v) {
-                const auto &[weight, motion] = corrections[v];
-                if (weight <= 0.0 || stays[v]) continue;
-                if (weight == 1.0) {
-                    stays[v] = 1;
-                    move.end[v] = move.motion(move.start[v]);
-                    move.follow_motion(int(v));
-                } else {
-                    move.end[v] += weight * (move.start[v] + motion - move.end[v]);
-                }
+                const double weight = corrections[v].weight;
+                if (weight == 1.0)
+                    move.end[v] = move.start[v];
+                else if (weight > 0.0)
+                    move.end[v] += weight * (move.start[v] - move.end[v]);
             }
         });
 }

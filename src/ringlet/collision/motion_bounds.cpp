@@ -3,6 +3,7 @@
 #include "ringlet/math/collect.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace ringlet {
 namespace {
@@ -44,11 +45,27 @@ void MotionBounds::fit(const Move &move, const Fit &how, const std::vector<int> 
 }
 
 void MotionBounds::find_escaped(const Move &move) {
-    clear_escaped();
     const auto escapes = [&](int v) {
         return leaves(v, move.start[v]) || leaves(v, move.end[v]) || (!move.apex.empty() && leaves(v, move.apex[v]));
     };
-    add_escaped([&](int v) { return empty() ? mesh_.moves[v] != 0 : escapes(v); });
+    bool any = false;
+#pragma omp parallel for schedule(static) reduction(|| : any)
+    for (int v = 0; v < int(escaped_.size()); ++v) {
+        escaped_[v] = empty() ? mesh_.moves[v] != 0 : escapes(v);
+        any = any || escaped_[v];
+    }
+    any_escaped_ = any;
+}
+
+void MotionBounds::move_rigidly(View<Vec3> from, View<Vec3> to) {
+    const double half_side = 1.0 / std::sqrt(3.0); // of the cube in a ball of radius 1
+#pragma omp parallel for schedule(static)
+    for (int v = 0; v < int(to.size()); ++v) {
+        const double half = half_side * std::min((from[v] - low_[v]).minCoeff(), (high_[v] - from[v]).minCoeff());
+        low_[v] = to[v].array() - half;
+        high_[v] = to[v].array() + half;
+    }
+    boxes_.fit_static(low_, high_);
 }
 
 } // namespace ringlet

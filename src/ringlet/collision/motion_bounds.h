@@ -29,34 +29,12 @@ public:
 
     // Finds the vertices that escape on a move.
     void find_escaped(const Move &move);
-    void clear_escaped() { escaped_.assign(escaped_.size(), 0), any_escaped_ = false; }
-    // Adds those for which escapes(v), which is called in parallel, is true.
-    template <class Escapes> void add_escaped(const Escapes &escapes) {
-        bool any = any_escaped_;
-#pragma omp parallel for schedule(static) reduction(|| : any)
-        for (int v = 0; v < int(escaped_.size()); ++v) {
-            escaped_[v] |= escapes(v);
-            any = any || escaped_[v];
-        }
-        any_escaped_ = any;
-    }
     View<unsigned char> escaped() const { return escaped_; } // per vertex
     bool any_escaped() const { return any_escaped_; }
 
-    // Distance from a point to the nearest side of a vertex's bound; negative outside [m].
-    double clearance(int v, const Vec3 &point) const {
-        return std::min((point - low_[v]).minCoeff(), (high_[v] - point).minCoeff());
-    }
-    // Replaces every bound by a cube around `centres`, of half_side(v), which may be negative [m].
-    template <class HalfSide> void set_cubes(View<Vec3> centres, const HalfSide &half_side) {
-#pragma omp parallel for schedule(static)
-        for (int v = 0; v < int(centres.size()); ++v) {
-            const double half = half_side(v);
-            low_[v] = centres[v].array() - half;
-            high_[v] = centres[v].array() + half;
-        }
-        boxes_.fit_static(low_, high_);
-    }
+    // All vertices have moved by one rigid motion: a bound becomes a cube inside the ball that its vertex has in it, however
+    // that turned. One that its vertex had left is empty.
+    void move_rigidly(View<Vec3> from, View<Vec3> to);
 
     const SweptBoxes &boxes() const { return boxes_; } // of the primitives in these bounds
 

@@ -8,13 +8,13 @@
 namespace ringlet {
 
 PairCache::PairCache(const CollisionMesh &mesh)
-    : mesh_(mesh), all_(mesh), broad_phase_(mesh), bounds_(mesh), advection_(mesh), boxes_(mesh), paths_(mesh) {}
+    : mesh_(mesh), all_(mesh), broad_phase_(mesh), bounds_(mesh), boxes_(mesh), paths_(mesh) {}
 
 void PairCache::clear() {
     state_ = State::Empty;
     complete_ = false;
     bounds_.clear();
-    cached_.clear(), reachable_.clear(), path_candidates_.clear();
+    transient_.clear(), cached_.clear(), reachable_.clear(), path_candidates_.clear();
 }
 
 std::vector<CandidatePair> PairCache::pairs_of(const Candidates &found) const {
@@ -39,8 +39,7 @@ std::vector<CandidatePair> PairCache::pairs_of(const Candidates &found) const {
 }
 
 void PairCache::update_bounds(const Move &move, const BoundsOptions &options) {
-    const bool was_advected = complete_; // the broad phase holds the boxes of before
-    complete_ = false;
+    complete_ = true;
     const double missing = state_ == State::OneMove ? options.margin : 0.0;
     const std::vector<int> outside = bounds_.outside(move, options.max_path, missing);
     if (outside.empty() && state_ == State::Bounded) {
@@ -52,9 +51,10 @@ void PairCache::update_bounds(const Move &move, const BoundsOptions &options) {
     const bool most = state_ == State::Empty || 2 * outside.size() > move.start.size(); // then a search for all takes no longer
     const bool again = state_ == State::OneMove || (state_ == State::Bounded && refitted_all_);
     const bool one_move = most && again && !options.lasting;
-    refitted_all_ = most || was_advected || state_ == State::OneMove;
+    refitted_all_ = most || worn_ || state_ == State::OneMove;
     Candidates found;
     if (refitted_all_) {
+        worn_ = false;
         bounds_.fit(move, {one_move ? 0.0 : options.margin, options.max_path});
         state_ = one_move ? State::OneMove : State::Bounded;
         if (one_move) fit_boxes(move);
@@ -90,7 +90,6 @@ std::vector<CandidatePair> PairCache::find_transient(View<unsigned char> changed
 }
 
 void PairCache::begin_move(const Move &move) {
-    complete_ = false;
     deferred_.clear();
     bounds_.find_escaped(move);
     paths_.set_changed(all_);
@@ -157,6 +156,15 @@ void PairCache::commit_move(View<Vec3> start, View<Vec3> end) {
                 with_vertices(mesh_, pair, [&](const auto &a, const auto &b) { return max_approach(a, b, start, end); });
         }
     paths_.clear();
+    complete_ = true;
+}
+
+void PairCache::move_rigidly(View<Vec3> from, View<Vec3> to) {
+    if (state_ == State::OneMove) clear();
+    if (state_ == State::Empty) return;
+    bounds_.move_rigidly(from, to);
+    worn_ = true;
+    broad_phase_.invalidate();
 }
 
 std::vector<ContactPair> PairCache::contact_pairs(View<Vec3> positions) {

@@ -5,7 +5,6 @@
 #include "ringlet/collision/motion_bounds.h"
 #include "ringlet/collision/narrow_phase.h"
 #include "ringlet/collision/primitive_paths.h"
-#include "ringlet/collision/rigid_advection.h"
 
 #include <vector>
 
@@ -43,11 +42,8 @@ public:
     void defer_update(View<unsigned char> changed) { deferred_.assign(changed.begin(), changed.end()); }
     void commit_move(View<Vec3> start, View<Vec3> end); // or any fraction of the move
 
-    // The same for a move that nearly follows one rigid motion: only deviating vertices need a search. Vertices with one
-    // number ≥ 0 in `rigid` share an affine motion. Updates may lead anywhere.
-    void begin_rigid_move(const Move &move, const RigidMotion &motion, View<int> rigid);
-    void update_rigid_move(const Move &move, const RigidMotion &motion, View<int> rigid, View<unsigned char> changed);
-    void commit_rigid_move(View<Vec3> start, View<Vec3> end); // as it last was
+    // Between moves: all vertices have moved by one rigid motion, which changes no gap.
+    void move_rigidly(View<Vec3> from, View<Vec3> to);
 
     // Pairs that may have an impact on the move, in order; after an update only those with a changed vertex. Whoever measures a
     // gap at the start of the move may raise min_gap to it.
@@ -66,7 +62,7 @@ public:
 
     // All pairs that may have an impact on the move are cached, however far each side gets.
     bool is_bounded() const { return !bounds_.any_escaped(); }
-    // After a rigid move: contact_pairs() is exact without new bounds.
+    // Whether contact_pairs() is exact: after an update of the bounds or a move, until clear().
     bool is_complete() const { return complete_; }
     int size() const { return int(cached_.size() + transient_.size()); }
 
@@ -81,7 +77,6 @@ private:
     std::vector<CandidatePair> pairs_of(const Candidates &found) const;
     std::vector<CandidatePair> find_transient(View<unsigned char> changed);
     template <class Filter> std::vector<CandidatePair *> cull_straight(const Filter &filter) const;
-    void follow(const Move &move, const RigidMotion &motion, View<int> rigid, const MeshSubset &changed);
     void add_transient_candidates();
     bool may_contact(const CandidatePair &pair) const { return pair.min_gap - paths_.length(pair) < pair.d_hat; }
     bool may_impact(const CandidatePair &pair) const {
@@ -93,14 +88,13 @@ private:
     const MeshSubset all_;
     BroadPhase broad_phase_;
     MotionBounds bounds_;
-    RigidAdvection advection_;
     SweptBoxes boxes_; // of the move
     PrimitivePaths paths_;
     State state_ = State::Empty;
     bool refitted_all_ = false; // by the last update of the bounds
+    bool worn_ = false;         // bounds have moved rigidly, and shrunk, since they were fitted
     bool complete_ = false;
     std::vector<unsigned char> deferred_; // vertices; empty: none
-    bool boxes_searched_ = false;         // on a rigid move: the broad phase holds the boxes of the move
 
     std::vector<CandidatePair> cached_, transient_; // in order
     std::vector<CandidatePair *> reachable_, path_candidates_,

@@ -14,11 +14,6 @@ inline constexpr double impact_reach = 0.6;            // of d_hat: culling for 
 inline constexpr float coordinate_rounding = 0x1p-20f; // of the largest coordinate, in single precision
 inline constexpr float time_rounding = 1e-6f;          // of the duration of a move
 
-// Rigid advection: fractions of the least radius of moving vertices, and of a distance.
-inline constexpr double max_deviation = 0.1;        // a vertex that deviates by more escapes its bound
-inline constexpr double equal_deviation = 0.001;    // below it all vertices are given the largest deviation
-inline constexpr double least_kept_distance = 0.75; // cos ½θ of a rotation by θ: larger rotations advect nothing
-
 // Bounding volume hierarchy.
 inline constexpr double rebuild_growth = 1.4; // of the leaf boxes since the last build
 inline constexpr int serial_nodes = 1 << 10;  // fewer are refitted by one thread

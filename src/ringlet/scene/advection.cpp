@@ -27,41 +27,34 @@ RigidMotion motion_of_most(const SceneVertices &vertices, View<Vec3> from, View<
     return fit_rigid_motion_robust(sample, from, to);
 }
 
-} // namespace
-
-std::vector<int> advect_rigidly(const PrescribedMotion &motion, View<int> offsets, const Carriers &carriers,
-                                std::vector<Vec3> &end) {
+// The ends of all vertices, dynamic ones advected rigidly. A strand goes with its root, or with the body that it is rooted in.
+// A cloth goes with its body, else with the mean motion of its prescribed vertices, else with that of all.
+std::vector<Vec3> advected_rigidly(const PrescribedMotion &motion, View<int> offsets, const Carriers &carriers) {
     const SceneVertices &all = motion.vertices;
+    std::vector<Vec3> end(motion.target.begin(), motion.target.end());
     const std::vector<int> leaders = motion.rigid_bodies();
-    std::vector<int> rigid(all.count(), -1);
-    for (int b = 0; b < int(leaders.size()); ++b)
-        for (int v = all.bodies[b]; v < all.bodies[b + 1]; ++v)
-            if (leaders[b] >= 0 && !motion.is_behind(v)) rigid[v] = b;
     const auto follows_body = [&](int body, int first, int last) {
         return body >= 0 && leaders[body] >= 0 && motion.follow(first, last, leaders[body]);
     };
-    const auto move = [&](int first, int last, int number, const auto &by) {
-        for (int v = first; v < last; ++v) {
+    const auto move = [&](int first, int last, const auto &by) {
+        for (int v = first; v < last; ++v)
             if (all.mesh.moves[v]) end[v] = by(motion.start[v]);
-            if (all.mesh.moves[v] || !motion.is_behind(v)) rigid[v] = number;
-        }
     };
 #pragma omp parallel for schedule(static)
     for (int s = 0; s < all.strands; ++s) {
         const int first = offsets[s], last = offsets[s + 1];
-        const int wanted = s < int(carriers.of_strands.size()) ? carriers.of_strands[s] : -1;
-        const int body = follows_body(wanted, first, last) ? wanted : -1, leader = body >= 0 ? leaders[body] : first;
-        const int own = motion.follow(first, last, first) ? int(leaders.size()) + s : -1;
-        move(first, last, body >= 0 ? body : own, [&](const Vec3 &point) { return motion.carry(leader, point); });
+        const int body = s < int(carriers.of_strands.size()) ? carriers.of_strands[s] : -1;
+        const int leader = follows_body(body, first, last) ? leaders[body] : first;
+        move(first, last, [&](const Vec3 &point) { return motion.carry(leader, point); });
     }
     for (int c = 0; c + 1 < int(all.cloths.size()); ++c) {
         const int first = all.cloths[c], last = all.cloths[c + 1], body = carriers.of_cloths[c];
         if (follows_body(body, first, last)) {
-            move(first, last, body, [&](const Vec3 &point) { return motion.carry(leaders[body], point); });
+            move(first, last, [&](const Vec3 &point) { return motion.carry(leaders[body], point); });
             continue;
         }
         if (const std::vector<int> own = prescribed(all, first, last); !own.empty()) {
-            move(first, last, -1, fit_rigid_motion(own, motion.start, motion.target));
+            move(first, last, fit_rigid_motion(own, motion.start, motion.target));
             continue;
         }
         RigidMotion mean;
@@ -69,21 +62,19 @@ std::vector<int> advect_rigidly(const PrescribedMotion &motion, View<int> offset
         if (const std::vector<int> any = prescribed(all, 0, all.count()); !any.empty())
             mean = fit_rigid_motion(any, motion.start, motion.target);
         mean.rotation = Mat3::Identity(); // the rotation of others would throw it off
-        move(first, last, -1, mean);
+        move(first, last, mean);
     }
-    return rigid;
+    return end;
 }
-
-namespace {
 
 // An attempt at an advection.
 class Attempt {
 public:
-    Attempt(const PrescribedMotion &motion, View<int> offsets, const Carriers &carriers, Configuration &configuration)
-        : motion_(motion), vertices_(motion.vertices), end_(motion.target.begin(), motion.target.end()),
-          rigid_(advect_rigidly(motion, offsets, carriers, end_)), through_space_(vertices_.objects, 0),
-          islands_(vertices_.objects + body_count()), move_(configuration.connected(), configuration.pairs, motion.start, end_,
-                                                            motion_of_most(vertices_, motion.start, end_), rigid_) {
+    // `motion` starts where the configuration is; `end` is where all vertices are to go.
+    Attempt(const PrescribedMotion &motion, std::vector<Vec3> end, Configuration &configuration)
+        : motion_(motion), vertices_(motion.vertices), end_(std::move(end)), through_space_(vertices_.objects, 0),
+          islands_(vertices_.objects + body_count()),
+          move_(configuration.connected(), configuration.pairs, motion.start, end_) {
         join_islands();
     }
 
@@ -169,14 +160,13 @@ private:
         Vec3 end = map(motion_.start[v]);
         if (v < vertices_.dynamic_vertices) return end;
         const Vec3 own = motion_.start[v] + motion_.target[v] - motion_.led[v];
-        const double most = scene_settings::dent_deviation * (own - move_.motion(motion_.start[v])).norm();
+        const double most = scene_settings::dent_deviation * (own - motion_.start[v]).norm();
         return (end - own).norm() <= most ? end : motion_.target[v];
     }
 
     const PrescribedMotion motion_;
     const SceneVertices &vertices_;
     std::vector<Vec3> end_;
-    const std::vector<int> rigid_;
     std::vector<unsigned char> through_space_; // per object
     DisjointSets islands_;                     // of objects and bodies that impacts have connected
     AdvectedMove move_;
@@ -209,9 +199,15 @@ std::vector<unsigned char> advect(const PrescribedMotion &motion, View<int> offs
     const SceneVertices &vertices = motion.vertices;
     std::vector<unsigned char> may_wait;
     std::vector<Vec3> target(motion.target.begin(), motion.target.end());
+    std::vector<Vec3> end = advected_rigidly(motion, offsets, carriers);
+    const RigidMotion frame = motion_of_most(vertices, motion.start, end);
+    configuration.begin_step(frame);
+    std::vector<Vec3> led = configuration.positions;
+    for (int v = 0; v < vertices.count(); ++v)
+        if (motion.is_behind(v)) led[v] = frame(motion.led[v]);
     std::optional<Attempt> attempt;
     for (double part = 1.0;; part *= 0.5) {
-        attempt.emplace(PrescribedMotion{vertices, motion.start, motion.led, target}, offsets, carriers, configuration);
+        attempt.emplace(PrescribedMotion{vertices, configuration.positions, led, target}, std::move(end), configuration);
         attempt->by_zones();
         if (attempt->arrives()) break;
         if (may_wait.empty()) may_wait = bodies_that_may_wait(motion, carriers);
@@ -222,16 +218,17 @@ std::vector<unsigned char> advect(const PrescribedMotion &motion, View<int> offs
         if (waiting.empty()) break;
         for (const int b : waiting)
             for (int v = vertices.bodies[b]; v < vertices.bodies[b + 1]; ++v) {
-                const Vec3 waits = attempt->move().motion(motion.start[v]);
+                const Vec3 &waits = configuration.positions[v];
                 target[v] = part > scene_settings::least_part ? Vec3(0.5 * (waits + target[v])) : waits;
             }
+        end = advected_rigidly({vertices, motion.start, motion.led, target}, offsets, carriers);
     }
     truncate_locally(attempt->move(), whole_objects(vertices, may_wait));
     Configuration::add(attempt->move().report(), report);
     std::vector<unsigned char> astray = attempt->through_space();
     for (int v = 0; v < vertices.dynamic_vertices; ++v)
         if (!vertices.mesh.moves[v] && attempt->end()[v] != motion.target[v]) astray[vertices.mesh.object[v]] = 1;
-    configuration.commit_rigid(attempt->end());
+    configuration.commit(attempt->end());
     return astray;
 }
 

@@ -14,15 +14,11 @@ struct Carriers {
     Vec3 drift;           // of all cloths where nothing is prescribed [m]
 };
 
-// Advects rigidly: a strand with its root, or with the body that it is rooted in; a cloth with its body, else with the mean
-// motion of its prescribed vertices, else with that of all. Sets the ends of dynamic vertices. Returns for each vertex the body
-// that it moves along with as one, or beyond these a number of its strand's own where that moves rigidly; −1: none.
-std::vector<int> advect_rigidly(const PrescribedMotion &motion, View<int> offsets, const Carriers &carriers,
-                                std::vector<Vec3> &end);
-
-// Advects the configuration with a prescribed motion that starts there, without intersections. Only what has an impact is
-// corrected, step by step:
-//   1. objects are advected rigidly, and impact zones share one motion;
+// Begins a step of the configuration, and advects it with a prescribed motion that starts there, without intersections. Strands
+// are advected rigidly with their root or with the body that they are rooted in, cloths with their body or their pins. The
+// motion that most have in common is the frame in which the step begins. What moves otherwise may have impacts, and is
+// corrected step by step:
+//   1. impact zones share one motion;
 //   2. objects that still have an impact are advected through space, then the surfaces of bodies a little;
 //   3. bodies that move affinely and carry nothing make half of their motion, a quarter, …, none, and wait with the rest;
 //   4. what is left is truncated, bodies included.

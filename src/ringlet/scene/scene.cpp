@@ -61,9 +61,7 @@ SceneData::SceneData(const StrandModel &model_, StrandState &state_, const std::
 }
 
 void SceneData::exempt_coincident_pairs() {
-    const std::vector<Vec3> &now = configuration.positions;
-    configuration.pairs.update_bounds({now, now}, {.margin = 0.0, .max_path = 0.0});
-    for (const ContactPair &pair : configuration.pairs.contact_pairs(now)) {
+    for (const ContactPair &pair : configuration.contact_pairs()) {
         if (pair.closest.distance2 > std::pow(scene_settings::coincident * pair.d_hat, 2)) continue;
         vertices.mesh.exempt.push_back(pair);
         with_vertices(vertices.mesh, pair, [&](const auto &a, const auto &b) { coincident.push_back({a[0], b[0]}); });
@@ -123,16 +121,14 @@ void Scene::place() { data_->take_placed(); }
 
 std::vector<Contact> Scene::touching() {
     const SceneVertices &vertices = data_->vertices;
-    PairCache &pairs = data_->configuration.pairs;
-    const std::vector<Vec3> &now = data_->configuration.positions;
-    pairs.clear();
-    pairs.update_bounds({now, now}, {.margin = 0.0, .max_path = 0.0});
+    Configuration &configuration = data_->configuration;
+    configuration.pairs.clear();
     ContactMaterial material = vertices.material;
     material.stiffness.assign(vertices.count(), 1.0);
     material.firm_stiffness = material.stiffness;
     ContactSet contacts; // without a past
-    contacts.find(vertices.mesh, material, pairs.contact_pairs(now), now, now);
-    pairs.clear();
+    contacts.find(vertices.mesh, material, configuration.contact_pairs(), configuration.positions, configuration.positions);
+    configuration.pairs.clear();
     return contacts.contacts();
 }
 

@@ -70,8 +70,8 @@ public:
     // contact. A vertex of each of the two.
     const std::vector<std::array<int, 2>> &coincident() const;
 
-    // Keeps the positions after each move of the last step, the first being its start: no pair meets while every vertex goes
-    // straight from one to the next.
+    // Keeps the positions after each move of the last step. The first are those of its start after a rigid motion of
+    // everything: no pair meets while every vertex goes straight from one to the next.
     void record(bool on);
     const std::vector<std::vector<Vec3>> &path() const;
 

@@ -20,9 +20,8 @@ void begin_contact(SceneData &scene, double dt) {
 void find_initial_contacts(SceneData &scene, double dt) {
     const std::vector<Vec3> &now = scene.configuration.positions;
     ContactSet &contacts = scene.objective.contacts;
-    scene.configuration.pairs.update_bounds({now, now}, {.margin = 0.0, .max_path = 0.0});
     begin_contact(scene, dt);
-    const std::vector<ContactPair> touching = scene.configuration.pairs.contact_pairs(now);
+    const std::vector<ContactPair> touching = scene.configuration.contact_pairs();
     contacts.begin(scene.vertices.mesh, scene.vertices.material, touching, scene.initial_forces, now);
     contacts.find(scene.vertices.mesh, scene.vertices.material, touching, now, now);
     scene.stiffness.raise_loads(contacts);
@@ -117,7 +116,7 @@ void move_to_initial_guess(SceneData &scene, const std::vector<unsigned char> &a
 void commit(SceneData &scene, View<Vec3> start, double dt, const SolverEffort &effort, const AlignedVector &x,
             SceneReport &report) {
     const std::vector<Vec3> &now = scene.configuration.positions;
-    const std::vector<ContactPair> touching = scene.configuration.pairs.contact_pairs(now);
+    const std::vector<ContactPair> touching = scene.configuration.contact_pairs();
     ContactSet &contacts = scene.objective.contacts;
     scene.objective.find_contacts(touching, start, now);
     contacts.commit_friction(now);
@@ -141,7 +140,6 @@ SceneReport take_step(SceneData &scene, const SceneInput &input, const SceneStep
     const StrandStep &step = settings.strands;
     if (!scene.begun) find_initial_contacts(scene, step.dt);
     if (scene.contact.parting_speed > 0.0) scene.objective.contacts.overlaps.grow(scene.contact.parting_speed * step.dt);
-    scene.configuration.begin_record();
     const std::vector<Vec3> start = scene.configuration.positions;
     begin_contact(scene, step.dt);
     const std::vector<unsigned char> astray = advect_to(scene, input.targets, step.dt * mean_velocity_of_cloths(scene), report);

@@ -5,21 +5,32 @@
 #include <algorithm>
 
 namespace ringlet {
+
 Configuration::Configuration(const VertexTable &table, View<int> strands, View<int> cloths, std::vector<Vec3> positions_,
                              double strand_radius)
     : positions(std::move(positions_)), pairs(table.mesh), table_(table), strands_(strands), cloths_(cloths),
       cloth_neighbours_(neighbours(table.mesh, cloths.front(), cloths.back())), strand_radius_(strand_radius) {}
 
+void Configuration::bound(const PlannedMove &move, bool lasts) {
+    pairs.update_bounds({positions, move.to, move.apex}, {.margin = solver_settings::bound_margin * strand_radius_,
+                                                          .max_path = solver_settings::max_bound_length,
+                                                          .lasting = lasts});
+}
+
+std::vector<ContactPair> Configuration::contact_pairs() {
+    if (!pairs.is_complete()) bound({positions, {}}, true);
+    return pairs.contact_pairs(positions);
+}
+
 void Configuration::limit(PlannedMove &move, const LimitSettings &settings, SceneReport &report) {
-    const bool stays = std::equal(move.to.begin(), move.to.end(), positions.begin()) &&
-                       std::equal(move.apex.begin(), move.apex.end(), positions.begin());
-    if (!(pairs.is_complete() && (stays || settings.few))) {
+    if (std::equal(move.to.begin(), move.to.end(), positions.begin()) &&
+        std::equal(move.apex.begin(), move.apex.end(), positions.begin()))
+        return; // it stays
+    if (!settings.few) {
         const Stopwatch watch(report.time_filter);
-        const double margin = stays ? 0.0 : solver_settings::bound_margin * strand_radius_; // rest rarely lasts
-        pairs.update_bounds({positions, move.to, move.apex},
-                            {.margin = margin, .max_path = solver_settings::max_bound_length, .lasting = settings.lasts});
+        bound(move, settings.lasts);
     }
-    if (!stays) limit(move, settings.whole, {}, report);
+    limit(move, settings.whole, {}, report);
 }
 
 void Configuration::limit_again(PlannedMove &move, bool whole, View<unsigned char> changed, SceneReport &report) {
@@ -45,13 +56,12 @@ void Configuration::commit(const std::vector<Vec3> &to) {
     add_to_record();
 }
 
-void Configuration::commit_rigid(const std::vector<Vec3> &to) {
-    pairs.commit_rigid_move(positions, to);
-    positions = to;
-    add_to_record();
-}
-
-void Configuration::begin_record() {
+void Configuration::begin_step(const RigidMotion &motion_of_most) {
+    std::vector<Vec3> moved;
+    moved.reserve(positions.size());
+    for (const Vec3 &x : positions) moved.push_back(motion_of_most(x));
+    pairs.move_rigidly(positions, moved);
+    positions = std::move(moved);
     recorded_.clear();
     add_to_record();
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ringlet/ccd/motion_limiter.h"
+#include "ringlet/geometry/rigid_motion.h"
 #include "ringlet/solver/report.h"
 #include "ringlet/solver/vertex_table.h"
 
@@ -24,6 +25,9 @@ public:
     std::vector<Vec3> positions;
     PairCache pairs;
 
+    // The pairs that are nearer than their activation distance.
+    std::vector<ContactPair> contact_pairs();
+
     ConnectedMesh connected() const { return {table_.mesh, strands_, cloths_, &cloth_neighbours_}; }
 
     // Shortens a move so that no pair comes closer than it may. Strands keep their shape and take a fraction of the whole move
@@ -31,7 +35,7 @@ public:
     // moves.
     struct LimitSettings {
         bool whole = true, lasts = true;
-        bool few = false; // vertices move: candidates need not be bounded for later moves
+        bool few = false; // vertices move: candidates are found for them alone
     };
     void limit(PlannedMove &move, const LimitSettings &settings, SceneReport &report);
     // The same where some vertices of the last limited move end elsewhere.
@@ -39,17 +43,20 @@ public:
 
     // Takes the last limited move, or any fraction of it.
     void commit(const std::vector<Vec3> &to);
-    void commit_rigid(const std::vector<Vec3> &to); // all of an advection
     static void add(const CcdReport &limited, SceneReport &report);
 
-    // Keeps the positions after each move of a step; no pair meets while vertices go straight from one to the next.
+    // Begins a step in the frame of its end: as if all vertices had made the motion that most make. No gap changes.
+    void begin_step(const RigidMotion &motion_of_most);
+
+    // Keeps the positions as the step begins and after each of its moves; no pair meets while vertices go straight from one to
+    // the next.
     void record(bool on) { recording_ = on; }
-    void begin_record();
-    void add_to_record();
     const std::vector<std::vector<Vec3>> &recorded() const { return recorded_; }
 
 private:
+    void bound(const PlannedMove &move, bool lasts);
     void limit(PlannedMove &move, bool whole, View<unsigned char> changed, SceneReport &report);
+    void add_to_record();
 
     const VertexTable &table_;
     View<int> strands_, cloths_;

@@ -59,8 +59,7 @@ SolverEffort Newton::minimise(View<Vec3> start, const NewtonSettings &settings, 
 
 void Newton::find_contacts(View<Vec3> start, double damping, SceneReport &report) {
     const Stopwatch watch(report.time_pairs);
-    const std::vector<Vec3> &now = configuration_.positions;
-    objective_.find_contacts(configuration_.pairs.contact_pairs(now), start, now, damping);
+    objective_.find_contacts(configuration_.contact_pairs(), start, configuration_.positions, damping);
 }
 
 void Newton::solve(const LinearSettings &settings, const AlignedVector &x, AlignedVector &direction, SceneReport &report) {
