@@ -69,6 +69,9 @@ def run(
                 "cpu_ms": statistics.median(frame["cpu_ms"] for frame in cache.statistics[1:]),
                 "max_stretch": max(frame["max_stretch"] for frame in cache.statistics[1:]),
             }
+            if name != "without":  # the swing begins in frame 3
+                estimates = [frame["contact"]["motion_kept"] for frame in cache.statistics[3 - first :]]
+                results[name]["motion_kept"] = statistics.mean(estimates)
             if converged and name != "without":
                 with clock("converged"):
                     solver = shown.solver.model_copy(update={"newton": converged, "linear_tolerance": 0.02})

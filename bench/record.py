@@ -23,6 +23,7 @@ RESULTS = Path(__file__).with_name("results")
 ROOT = RESULTS.parents[1]
 CORE = ("src",)
 GROOM = (*CORE, *(f"python/ringlet/{name}" for name in ("data", "deform", "groom", "io")))
+UNTIMED = {"iterations", "liveliness", "nest", "tips"}  # what counts is the motion: nothing is gained by turns
 MEASURED = {"groom": GROOM, "slider": GROOM, "warp": GROOM, "collide": GROOM}  # folders, where not the core alone
 
 
@@ -48,7 +49,7 @@ def record(arguments: list[str], reference: str | None = None) -> Path:
         "load": round(load, 1),
         "result": json.loads(process.stdout),
     }
-    if reference := reference or kept.get("commit"):
+    if reference := reference or (None if arguments[0] in UNTIMED else kept.get("commit")):
         turns = run((reference, " ".join(arguments)))[" ".join(arguments)]
         entry["reference"] = {"commit": reference, **{name: turns[name] for name in ("ratio", "least", "most")}}
     path.write_text(json.dumps(entry, indent=1) + "\n")

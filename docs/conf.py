@@ -11,7 +11,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 from benchmarks import write_benchmarks
 from docstrings import as_list
 from figures import write_figures
-from measured import Growth, Measured
+from measured import Growth, Measured, Recorded
 from plots import write_convergence, write_memory, write_release, write_tips
 from reference import write_references
 from theory import write_theory
@@ -58,5 +58,6 @@ def write_generated(folder):
 def setup(app):
     app.add_directive("growth", Growth)
     app.add_directive("measured", Measured)
+    app.add_directive("recorded", Recorded)
     write_generated(Path(app.srcdir) / "_generated")
     app.connect("autodoc-process-docstring", as_list)

@@ -20,6 +20,7 @@ from sphinx.util.docutils import SphinxDirective
 
 ROOT = Path(__file__).parents[1]
 RESULTS = ROOT / "bench" / "results"
+NOTHING = "–"  # in a cell
 
 
 class Measured(SphinxDirective):
@@ -35,6 +36,40 @@ class Measured(SphinxDirective):
             run = json.loads((RESULTS / f"{name}.json").read_text())
             milliseconds = run["result"]["stages"][stage[0]] if stage else run["result"]["cpu_ms"]["median"]
             lines.append(f"| {what} | `{run['command']}` | {time(milliseconds)} | {core_of(run, whole=not stage)} |")
+        within = Element()
+        self.state.nested_parse(StringList(lines), 0, within)
+        return within.children
+
+
+class Recorded(SphinxDirective):
+    """Any values of runs: the columns, what they hold as a path with a format, and a run for each row.
+
+    ```{recorded}
+    coils | kept
+    coils:,d | kept:.0%
+    nest_rings_1_threads_1
+    ```
+    ``NAME : PATH`` makes a row for each item of what is there; ``key`` is the name of the item.
+    """
+
+    has_content = True
+
+    def run(self) -> list[Node]:
+        """The table."""
+        names, paths, *runs = self.content
+        columns = [cell.strip() for cell in paths.split("|")]
+        rows: list[list[str]] = []
+        for line in runs:
+            name, _, path = (word.strip() for word in line.partition(":"))
+            run = json.loads((RESULTS / f"{name}.json").read_text())
+            found = at(run["result"], path) if path else [run["result"]]
+            for key, item in found.items() if isinstance(found, dict) else enumerate(found):
+                cells = [value(item | {"key": key}, column) for column in columns]
+                rows.append([*cells, f"`{run['command']}`", core_of(run, whole=False)])
+        if empty := [path for path, *cells in zip(columns, *rows, strict=False) if {*cells} == {NOTHING}]:
+            raise self.error(f"recorded: no run holds {', '.join(empty)}")
+        lines = [f"| {names} | command | of |", "|---" * (len(columns) + 2) + "|"]
+        lines += [f"| {' | '.join(row)} |" for row in rows]
         within = Element()
         self.state.nested_parse(StringList(lines), 0, within)
         return within.children
@@ -63,6 +98,20 @@ class Growth(SphinxDirective):
         within = Element()
         self.state.nested_parse(StringList(lines), 0, within)
         return within.children
+
+
+def at(result: dict[str, Any], path: str) -> Any:
+    """What a result holds at a path of names with points between; None where it holds nothing there."""
+    for name in path.split("."):
+        result = result.get(name) if result is not None else None
+    return result
+
+
+def value(result: dict[str, Any], column: str) -> str:
+    """What a result holds at ``path:format``, written so; a dash where it holds nothing there."""
+    path, _, style = column.partition(":")
+    found = at(result, path)
+    return NOTHING if found is None else format(found, style)
 
 
 def time(milliseconds: float) -> str:

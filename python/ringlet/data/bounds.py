@@ -51,6 +51,6 @@ def check_curves(curves: Curves, points: NDArray, around: NDArray, where: str, r
 
 
 def _box(around: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
-    low, high = (np.asarray(of(around, axis=0), np.float64) for of in (np.min, np.max))
+    low, high = (np.asarray(bound, np.float64) for bound in extent(around))
     reach = max(LEAST_REACH, REACH_TIMES * float(np.linalg.norm(high - low)))
     return np.maximum(low - reach, -WORLD), np.minimum(high + reach, WORLD), reach
