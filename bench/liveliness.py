@@ -69,7 +69,7 @@ def run(
                 "cpu_ms": statistics.median(frame["cpu_ms"] for frame in cache.statistics[1:]),
                 "max_stretch": max(frame["max_stretch"] for frame in cache.statistics[1:]),
             }
-            if name != "without":  # the swing begins in frame 3
+            if name != "without" and frames > 2:  # the swing begins in frame 3
                 estimates = [frame["contact"]["motion_kept"] for frame in cache.statistics[3 - first :]]
                 results[name]["motion_kept"] = statistics.mean(estimates)
             if converged and name != "without":

@@ -8,6 +8,7 @@ namespace ringlet {
 
 RigidMotion fit_rigid_motion(const std::vector<int> &vertices, View<Vec3> start, View<Vec3> end) {
     constexpr double regularisation = 1e-9; // of the spread: makes an undetermined rotation the identity
+    constexpr double rounding = 1e-13;      // of the decomposition, which breaks the symmetry of mirror images
     RigidMotion motion;
     for (const int v : vertices)
         motion.from += start[v] / double(vertices.size()), motion.to += end[v] / double(vertices.size());
@@ -22,7 +23,8 @@ RigidMotion fit_rigid_motion(const std::vector<int> &vertices, View<Vec3> start,
     const Eigen::JacobiSVD<Mat3> svd(spread + regularisation * size * Mat3::Identity(),
                                      Eigen::ComputeFullU | Eigen::ComputeFullV);
     const double mirror = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
-    motion.rotation = svd.matrixU() * Vec3(1.0, 1.0, mirror).asDiagonal() * svd.matrixV().transpose();
+    const Mat3 rotation = svd.matrixU() * Vec3(1.0, 1.0, mirror).asDiagonal() * svd.matrixV().transpose();
+    if ((rotation - Mat3::Identity()).norm() > rounding) motion.rotation = rotation;
     return motion;
 }
 
