@@ -249,9 +249,8 @@ void bind_scene(nb::module_ &module) {
                 return to_numpy<double>(std::move(all), {stops, vertices, 3});
             },
             nb::rv_policy::automatic,
-            "Positions [m] of all vertices at the start of the last step, moved rigidly to the frame of its end, and after "
-            "each of "
-            "its moves, shape (k, n, 3).")
+            "Positions [m] of all vertices at the start of the last step, moved rigidly to the frame of its end, "
+            "and after each move, shape (k, n, 3).")
         .def_prop_ro(
             "contacts", [](const Scene &self) { return arrays_of(self.contacts()); }, nb::rv_policy::automatic,
             "Of the last step's end: vertices (k, 4), and weights, normal, distance and force (k, 9).")

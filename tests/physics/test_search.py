@@ -8,8 +8,8 @@ from ringlet.shot import Solver
 CONVERGED = Solver(newton=30)
 FRAMES = 48
 # Falls without a rest: with contact, where the converged run still slides by over 0.1 mm a frame after so many frames;
-# without, where a plane wave keeps an unstable balance that nothing but rounding disturbs. The rest of 119 is
-# such a balance too: what is off doubles every six frames.
+# without, where a plane wave keeps an unstable balance that nothing but rounding disturbs. The rest of 119 is such a
+# balance too: what is off doubles every six frames.
 RESTLESS = {True: {28, 53, 70, 118, 119, 157, 172, 174, 179}, False: {19}}
 
 
