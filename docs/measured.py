@@ -44,6 +44,8 @@ class Measured(SphinxDirective):
 class Recorded(SphinxDirective):
     """Any values of runs: the columns, what they hold as a path with a format, and a run for each row.
 
+    The commands and the core that they ran stand below.
+
     ```{recorded}
     coils | kept
     coils:,d | kept:.0%
@@ -59,17 +61,20 @@ class Recorded(SphinxDirective):
         names, paths, *runs = self.content
         columns = [cell.strip() for cell in paths.split("|")]
         rows: list[list[str]] = []
+        commands: dict[str, list[str]] = {}  # by the core that they ran
         for line in runs:
             name, _, path = (word.strip() for word in line.partition(":"))
             run = json.loads((RESULTS / f"{name}.json").read_text())
             found = at(run["result"], path) if path else [run["result"]]
             for key, item in found.items() if isinstance(found, dict) else enumerate(found):
                 cells = [value(item | {"key": key}, column) for column in columns]
-                rows.append([*cells, f"`{run['command']}`", core_of(run, whole=False)])
+                rows.append(cells)
+            commands.setdefault(core_of(run, whole=False), []).append(run["command"])
         if empty := [path for path, *cells in zip(columns, *rows, strict=False) if {*cells} == {NOTHING}]:
             raise self.error(f"recorded: no run holds {', '.join(empty)}")
-        lines = [f"| {names} | command | of |", "|---" * (len(columns) + 2) + "|"]
-        lines += [f"| {' | '.join(row)} |" for row in rows]
+        lines = [f"| {names} |", "|---" * len(columns) + "|", *(f"| {' | '.join(row)} |" for row in rows)]
+        for core, ran in commands.items():
+            lines += ["", f"Of {core}:", "", "```sh", *ran, "```"]
         within = Element()
         self.state.nested_parse(StringList(lines), 0, within)
         return within.children
