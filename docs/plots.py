@@ -24,7 +24,7 @@ from releases import PRESCRIBED, scenes
 RESULTS = Path(__file__).parents[1] / "bench" / "results"
 FRAMES = RESULTS / "frames.json"
 TIPS = RESULTS / "tips_threads_1.json"
-AT_ONE_RESOLUTION = {"plucked-coil", "friction", "push", "nest"}  # cases without a panel, which take long
+AT_ONE_RESOLUTION = {"plucked-coil", "bounce", "friction", "push", "nest"}  # cases without a panel, which take long
 RESOLUTION = re.compile(r"(?P<curve>.*), (?P<n>\d+) (edges|vertices a turn)$")
 
 

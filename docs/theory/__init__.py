@@ -16,6 +16,7 @@ ENERGIES = {
     "barrier": contact.barrier,
     "friction": contact.friction,
     "damping": strand.damping,
+    "hanging_coil": strand.hanging_coil,
     "outside": strand.outside,
 }
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from ringlet.validate import cantilever, hanging_chain, love, plucked_coil
+from ringlet.validate import bounce, cantilever, hanging_chain, love, plucked_coil
 from ringlet.validate.rods import gravity_for, line_density, rod_material, straight_rod, strand
 from scipy.integrate import solve_bvp
 from scipy.special import jn_zeros
@@ -156,6 +156,26 @@ def damping() -> Answer:
         ],
         rows,
     )
+
+
+def hanging_coil() -> Answer:
+    """Locks of all types that are plucked along and across, in steps of BDF-2; the words by theory are the lines."""
+    rows = [(kind, *row) for kind in bounce.LOCKS for row in bounce.agreement(kind, "bdf2")]
+    panels = []
+    for word in ("bounce [Hz]", "settle [s]", "swing [Hz]"):
+        expected = np.array([by_theory for _, name, by_theory, _ in rows if name == word])
+        measured = np.array([got for _, name, _, got in rows if name == word])
+        ends = np.array([0.9 * expected.min(), 1.1 * expected.max()])
+        panels.append(
+            Panel(
+                f"{word}, by theory",
+                "measured",
+                {"theory": (ends, ends)},
+                {"theory": (expected, measured)},
+                log=True,
+            )
+        )
+    return Answer(panels, [(f"{kind}: {name}", by_theory, got) for kind, name, by_theory, got in rows])
 
 
 def outside() -> Answer:

@@ -70,6 +70,16 @@ class Strands:
         """Mass of each vertex [kg], shape (n,)."""
         return self._core.masses
 
+    @property
+    def drag(self) -> NDArray[np.float64]:
+        """Air drag of each vertex [kg/s], shape (n,)."""
+        return self._core.drag
+
+    @property
+    def damping(self) -> NDArray[np.float64]:
+        """Damping time of the strains at each vertex [s], shape (n,)."""
+        return self.material.damping * np.broadcast_to(self.variation.get("damping", 1.0), len(self.positions))
+
     def loads(self, gravity: Vector, wind: Vector = (0.0, 0.0, 0.0)) -> NDArray[np.float64]:
         """The forces of gravity [m/s²] and wind [m/s] on strands that are still [N], shape (n, 3)."""
         return np.outer(self._core.masses, gravity) + np.outer(self._core.drag, wind)

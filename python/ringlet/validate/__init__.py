@@ -3,6 +3,7 @@
 from ringlet.data.errors import UserError
 from ringlet.data.settings import did_you_mean
 from ringlet.validate import (
+    bounce,
     buckling,
     cantilever,
     friction,
@@ -26,6 +27,7 @@ _MODULES = (
     love,
     vibration,
     plucked_coil,
+    bounce,
     hanging_chain,
     buckling,
     out_of_plane,

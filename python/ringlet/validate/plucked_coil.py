@@ -9,13 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cache
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
 from scipy.optimize import curve_fit
 
+from ringlet.motion import Integrator, Stepping
 from ringlet.shot.solver import Solver
 from ringlet.sim.strands import Strands
 from ringlet.validate.case import Case, Row
@@ -23,7 +23,6 @@ from ringlet.validate.rods import masses, rod_material, strand
 
 RADIUS, PITCH, PER_TURN, VERTICES, PRESCRIBED = 5e-3, 5e-3, 12, 36, 3
 
-Integrator = Literal["backward_euler", "bdf2"]
 Series = NDArray[np.float64]
 
 
@@ -60,8 +59,7 @@ def exponent(damping: float) -> complex:
 
 def factor(integrator: Integrator, damping: float, dt: float) -> complex:
     """Amplification factor z of the mode in a step of the integrator."""
-    step = dt * exponent(damping)
-    return 1 / (1 - step) if integrator == "backward_euler" else 1 / (2 - np.sqrt(1 + 2 * step))
+    return complex(Stepping(dt, integrator).multiplier(exponent(damping)))
 
 
 def ring(integrator: Integrator, damping: float, steps_per_period: int, periods: int) -> tuple[Series, Series]:
