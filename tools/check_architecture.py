@@ -31,7 +31,7 @@ CORE = {
 }
 
 # Folder of python/ringlet → folders that it may import.
-API = "the public API"  # ringlet/__init__.py
+API = "the public API"  # the names of ringlet/__init__.pyi, which are loaded when they are asked for
 PYTHON = {
     "data": set(),
     "deform": {"data", "_core"},
@@ -59,6 +59,7 @@ PYTHON = {
         "io",
         "picture",
         "report",
+        API,  # for the doctor, which starts where a package is missing
     },
     "viewer": {"data", "_core", "groom", "shot", "sim", "io", "picture", "api"},
     "host": {"data", "groom", "shot", "io", "report", "api", "viewer"},
@@ -101,6 +102,8 @@ class Package:
         self.folder = root / "python/ringlet"
         files = sorted(self.folder.rglob("*.py"))
         self.modules = {self.name(file): file for file in files}
+        if (stub := self.folder / "__init__.pyi").exists():
+            self.modules[""] = stub
 
     def name(self, file: Path) -> str:
         """Dotted name below ringlet, empty for ringlet itself."""
@@ -123,6 +126,8 @@ class Package:
             elif isinstance(node, ast.ImportFrom) and not node.level:
                 # An imported name may itself be a module: `from ringlet import _core`.
                 names = [f"{node.module}.{alias.name}" for alias in node.names]
+            elif isinstance(node, ast.ImportFrom) and file.suffix == ".pyi":  # lazy_loader takes relative names only
+                names = [f"ringlet.{node.module}.{alias.name}" for alias in node.names]
             elif isinstance(node, ast.ImportFrom):
                 raise SyntaxError(f"{file}:{node.lineno}: relative import; write the full name")
             else:

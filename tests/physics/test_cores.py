@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 from braids import EXAMPLE, RECIPE, SHAPES
+from ringlet.api.grooms import build_groom
+from ringlet.api.shots import read_shot, start_motion
 from ringlet.data.groom import CORE, SECTION, STRAND_RADIUS
 from ringlet.sim.cores import Cores
 
-from ringlet import api
 from ringlet.groom import parse_recipe
 
 SECTIONS = "size = 4.5\nstrands = 3"
@@ -29,13 +30,13 @@ tail = 0.8
 @pytest.fixture(scope="module")
 def groom():
     text = RECIPE.format(sections=SECTIONS, points=110, shape=SHAPE, where="z < -5 and y > 5")
-    return api.build_groom(parse_recipe(text, EXAMPLE / "cores.recipe.toml"))
+    return build_groom(parse_recipe(text, EXAMPLE / "cores.recipe.toml"))
 
 
 def test_cores_and_strands_play_in_one_shot(groom):
     core = groom.locks.curve[CORE] > 0
     assert core.any() and not core.all()
-    motion = api.start_motion(api.read_shot(EXAMPLE / "nod.shot.toml"), groom)
+    motion = start_motion(read_shot(EXAMPLE / "nod.shot.toml"), groom)
     assert len(motion.locks) == (~core).sum() + core.sum() / 3
     first = motion.first
     np.testing.assert_allclose(motion.points(first), groom.locks.points, atol=1e-9)  # at rest nothing has moved
@@ -70,7 +71,7 @@ def test_a_core_weighs_and_resists_as_its_strands_side_by_side(groom):
 
 
 def test_a_groom_without_cores_is_simulated_as_it_is(groom):
-    plain = api.build_groom(
+    plain = build_groom(
         parse_recipe(
             RECIPE.format(sections=SECTIONS, points=110, shape='op = "braid"\nwidth = 1.2', where="z < -9"),
             EXAMPLE / "a.recipe.toml",
@@ -83,8 +84,8 @@ def test_a_groom_without_cores_is_simulated_as_it_is(groom):
 def test_a_cornrow_may_be_a_core_too():
     sections, points, shape = SHAPES["cornrows"]
     recipe = RECIPE.format(sections=sections, points=points, shape=shape + '\nsimulate = "core"', where="x > 3")
-    made = api.build_groom(parse_recipe(recipe, EXAMPLE / "cores.recipe.toml"))
-    motion = api.start_motion(api.read_shot(EXAMPLE / "nod.shot.toml"), made)
+    made = build_groom(parse_recipe(recipe, EXAMPLE / "cores.recipe.toml"))
+    motion = start_motion(read_shot(EXAMPLE / "nod.shot.toml"), made)
     assert len(motion.locks) == len(made.locks) / 3
     for k in range(1, 6):
         statistics = motion.reach(k)

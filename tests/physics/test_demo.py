@@ -3,10 +3,10 @@
 from pathlib import Path
 
 import numpy as np
-from ringlet.api import loft, read_shot, simulate, write_loft
 from ringlet.api.demo import balanced
 
 import ringlet
+from ringlet import loft, read_shot, simulate, write_loft
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "child"
 LOCKS = 40

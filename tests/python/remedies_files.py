@@ -46,8 +46,8 @@ from remedies import (
     simulated as simulated_again,
 )
 from ringlet.adoption.clumps import find_clumps
+from ringlet.api.caches import scalp_clip
 from ringlet.api.pictures import lock_points
-from ringlet.api.shots import scalp_clip
 from ringlet.cli.bench import parameters
 from ringlet.data import regular
 from ringlet.data.accessory import Accessory

@@ -38,6 +38,11 @@ def problems():
         ("python/ringlet/shot/shot.py", "from ringlet.sim.motion import Motion", "shot may not use sim"),
         ("python/ringlet/hats/hat.py", "", "'hats' is not a folder"),
         ("python/ringlet/viewer/files/document.py", "from ringlet.viewer.show import maps", "files may not use show"),
+        (
+            "python/ringlet/__init__.pyi",
+            "from .sim.motion import Motion\nfrom .picture import still",
+            "API may not use picture",
+        ),
         ("bench/groom.py", "import ringlet._core", "bench may use the public API only"),
     ],
 )

@@ -14,11 +14,12 @@ import numpy as np
 import pytest
 from commands import edit, made, refused, run
 from pxr import Usd, UsdGeom
+from ringlet.api.caches import scalp_clip
+from ringlet.api.run import FREE
 from ringlet.sim.roots import Roots
 from small_example import FRAMES
 
 import ringlet
-from ringlet import api
 
 
 @pytest.mark.parametrize(("unit", "size"), [(1.0, "18 m"), (0.001, "0.018 m")])
@@ -53,7 +54,7 @@ def test_hairs_of_a_long_cache_are_made_with_a_few_frames_in_memory(pipeline, tm
 
 def carried(groom, frame):
     """The groomed locks on the head at a frame."""
-    return Roots(groom).carry(api.scalp_clip(groom).at(frame), frame)
+    return Roots(groom).carry(scalp_clip(groom).at(frame), frame)
 
 
 def hairs_at(file, frame):
@@ -160,7 +161,7 @@ def test_a_report_is_written_to_the_requested_folder(pipeline, tmp_path):
     assert len(report["statistics"]) == FRAMES
     assert [stage["name"] for stage in report["stages"]] == ["groom", "simulate"]
     assert "<html" in (tmp_path / "report/report.html").read_text()
-    assert report["limits"] == [ringlet.api.run.FREE]
+    assert report["limits"] == [FREE]
 
 
 def test_a_report_without_a_simulation_states_no_limit_of_contact(pipeline, tmp_path):

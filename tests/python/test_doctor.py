@@ -1,7 +1,10 @@
 """The diagnosis of an installation."""
 
 import json
+import subprocess
+import sys
 
+import pytest
 from ringlet.api import doctor
 from ringlet.cli.app import app
 from typer.testing import CliRunner
@@ -34,6 +37,15 @@ def test_a_failed_check_is_reported_and_the_others_still_run(monkeypatch):
     assert findings["numpy"]["state"] == "ok" and findings["groom and USD"]["state"] == "ok"
     assert findings["no-such-package"]["state"] == "fails" and "pip install" in findings["no-such-package"]["remedy"]
     assert "out of order" in findings["broken"]["found"]
+
+
+@pytest.mark.parametrize(("package", "fail"), [("pxr", {"files", "picture"}), ("scipy.sparse", {"core", "pardiso"})])
+def test_the_doctor_reports_where_a_package_is_missing(package, fail):
+    text = f"import sys; sys.modules['{package}'] = None; from ringlet.cli.app import main; main()"
+    run = subprocess.run([sys.executable, "-c", text, "doctor", "--json"], capture_output=True, text=True)
+    assert run.returncode == 1, run.stderr
+    failed = {entry["name"]: entry["found"] for entry in json.loads(run.stdout) if entry["state"] == "fails"}
+    assert failed.keys() >= fail and all(package in found for found in failed.values())
 
 
 def test_no_simulation_runs_without_the_self_test(monkeypatch):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from commands import edit, made, refused, run
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdSkel
+from ringlet.api.caches import scalp_clip
 from ringlet.io import problems, read_bodies, read_clip, read_hairs, read_mesh, read_meshes, unread_surfaces
 from ringlet.io.subdivision import Cage, levels_for, refine
 from usd_scenes import CUBE, CUBE_FACES, add_cube, new_stage
@@ -163,7 +164,7 @@ def test_a_recipe_may_choose_the_cage(folder):
     groom = ringlet.read_groom(made(folder))
     cage = 0.01 * np.array(mesh.GetPointsAttr().Get())
     np.testing.assert_allclose(groom.scalp.points, cage, atol=1e-7)
-    assert groom.cage and ringlet.api.scalp_clip(groom).points.shape[1:] == cage.shape
+    assert groom.cage and scalp_clip(groom).points.shape[1:] == cage.shape
     (shown,) = read_meshes(folder / "groom.usdc")
     assert shown.points.shape == cage.shape  # the hairs' skin is that of the groom
     edit(folder / "small.recipe.toml", "surface = 'cage'", "surface = 'smooth'")

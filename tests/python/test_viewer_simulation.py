@@ -32,7 +32,7 @@ def test_a_run_in_a_long_frame_is_replaced_without_waiting_for_it(monkeypatch):
     def frame(layer, number, state, motion) -> bytes:
         return b"slow" if state.statistics["slow"] else b"quick"
 
-    monkeypatch.setattr(simulation.api, "start_motion", start_motion)
+    monkeypatch.setattr(simulation, "start_motion", start_motion)
     run = Simulation(iter(range(1, 9)).__next__, lambda: done.set() if run.state == "done" else None, print)
     stage = SimpleNamespace(groom=None, frame=frame, speeds=lambda *_: (0.0, 0.0))
     run.start(shot, "", stage)

@@ -18,6 +18,7 @@ class Watch:
             print(os.environ.get("GOMP_SPINCOUNT"), os.environ.get("OMP_WAIT_POLICY"), loaded)
 sys.meta_path.insert(0, Watch())
 import ringlet
+ringlet.use_threads(1)
 print("libgomp" in open("/proc/self/maps").read())
 """
 

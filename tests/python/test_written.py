@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from ringlet.api.caches import scalp_clip
 from ringlet.api.shots import start_motion
 from ringlet.data.binding import root_places
 from ringlet.data.braids import Braids
@@ -22,7 +23,6 @@ from ringlet.sim.inextensible import along_paths
 from ringlet.sim.written import Written
 
 import ringlet
-from ringlet import api
 
 CASE = Path(__file__).parents[1] / "cases" / "core_braid_stretch"
 RANDOM = np.random.default_rng(53)
@@ -47,7 +47,7 @@ def strain(curves: Curves, points: np.ndarray) -> np.ndarray:
 
 def test_strands_keep_the_lengths_of_their_edges_where_their_core_whips(folder: Path, groom: ringlet.Groom) -> None:
     cache = ringlet.simulate(folder / "s.shot.toml", groom)
-    clip = api.scalp_clip(groom)
+    clip = scalp_clip(groom)
     for frame, points, statistics in zip(cache.frames, cache.points, cache.statistics, strict=True):
         assert np.abs(strain(groom.locks, points)).max() < 1e-4  # the rounding of files
         assert statistics["max_stretch"] < 1e-6
@@ -186,7 +186,7 @@ def test_strands_beyond_a_cloth_are_named_with_it(folder: Path, groom: ringlet.G
             assert found[0]["depth"] == pytest.approx(np.linalg.norm(middle[-1] - middle[30]), rel=0.2)
             assert found[0]["points"] == pytest.approx(3 * 29, abs=9)
             shot = ringlet.read_shot(folder / "s.shot.toml")
-            started = simulate(shot, groom, api.scalp_clip(groom), garments=[scarf], frames=(1, 1))
+            started = simulate(shot, groom, scalp_clip(groom), garments=[scarf], frames=(1, 1))
             assert [one["what"] for one in started.statistics[0]["inside"]] == ["scarf"]
 
 

@@ -12,11 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 from judged_shots import EXAMPLE, judged
 from numpy.typing import NDArray
+from ringlet.api.grooms import build_groom
+from ringlet.api.shots import read_shot, start_motion
 from ringlet.data.groom import SECTION, STRAND_RADIUS
 from ringlet.groom.scalp import Scalp
 from ringlet.groom.shares import LAID
 
-from ringlet import Curves, api
+from ringlet import Curves
 from ringlet.groom import parse_recipe, weave
 
 WOVEN = "start = 1.2\ntail = 0.8\n"
@@ -73,8 +75,8 @@ def start(style: str, where: str = "1"):
     """Motion of the nod with braids in the sections that the mask has, and their groom."""
     sections, points, shape = SHAPES[style]
     recipe = RECIPE.format(sections=sections, points=points, shape=shape, where=where)
-    groom = api.build_groom(parse_recipe(recipe, EXAMPLE / "braids.recipe.toml"))
-    return api.start_motion(api.read_shot(EXAMPLE / "nod.shot.toml"), groom), groom
+    groom = build_groom(parse_recipe(recipe, EXAMPLE / "braids.recipe.toml"))
+    return start_motion(read_shot(EXAMPLE / "nod.shot.toml"), groom), groom
 
 
 def played(motion, groom, frames: int) -> Iterator[Held]:

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from ringlet.api import scalp_clip
+from ringlet.api.caches import scalp_clip
 from ringlet.sim.penetration import edge_triangle_intersections
 
 import ringlet

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 from crossings import Judge
+from ringlet.api.grooms import build_groom, read_recipe
+from ringlet.api.shots import loft, read_shot, start_motion, write_loft
 from ringlet.viewer.show.display_groom import without_muted
-
-from ringlet import api
 
 EXAMPLE = Path(__file__).parents[2] / "examples/child"
 SHOTS = sorted(file.name.removesuffix(".shot.toml") for file in EXAMPLE.glob("*.shot.toml"))
@@ -37,16 +37,16 @@ def start(
     balanced: file for rest shapes in equilibrium; None: the shot's own rest shapes
     collide: whether the groom keeps its locks out of skin and clothes
     """
-    settings = api.read_shot(EXAMPLE / f"{shot}.shot.toml")
-    made = api.read_recipe(EXAMPLE / f"{recipe}.recipe.toml" if recipe else settings.groom)
+    settings = read_shot(EXAMPLE / f"{shot}.shot.toml")
+    made = read_recipe(EXAMPLE / f"{recipe}.recipe.toml" if recipe else settings.groom)
     count = made.locks.count if locks is None else locks
     made = made.model_copy(update={"locks": made.locks.model_copy(update={"count": count})})
-    groom = api.build_groom(made if collide else without_muted(made, frozenset({"collide"})))
+    groom = build_groom(made if collide else without_muted(made, frozenset({"collide"})))
     if balanced is not None:
         rest = settings.rest.model_copy(update={"mode": "equilibrium", "file": balanced})
         settings = settings.model_copy(update={"rest": rest})
-        api.write_loft(api.loft(settings, groom), settings, balanced)
-    return api.start_motion(settings, groom)
+        write_loft(loft(settings, groom), settings, balanced)
+    return start_motion(settings, groom)
 
 
 def judged(motion, frames: int | None = None, every: int = 1) -> Iterator[Judged]:

@@ -6,30 +6,35 @@ import os
 import tempfile
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ringlet import _core, io
+from ringlet import groom as grooms
+from ringlet.adoption import Clumps, Coils, each_alone, find_clumps, fit_coils
+from ringlet.adoption.coil import no_coils
+from ringlet.adoption.scalp import scalp_of_roots
 from ringlet.api.conversion import source_space_of
 from ringlet.api.progress import Progress, stage
 from ringlet.data import limits
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.errors import UserError
 from ringlet.data.files import check_place, replacing
-from ringlet.data.groom import OFFSETS
+from ringlet.data.groom import OFFSETS, Groom
+from ringlet.data.hair_scene import CurveSet, HairScene
+from ringlet.data.mesh import Mesh
+from ringlet.data.random import Random
 from ringlet.data.reads import recorded
 from ringlet.data.resampling import Resampling
 from ringlet.data.settings import FORMAT
 from ringlet.data.stage import StageSpace
 from ringlet.data.toml import to_toml
-
-if TYPE_CHECKING:
-    from ringlet.adoption import Clumps, Coils
-    from ringlet.data.groom import Groom
-    from ringlet.data.mesh import Mesh
-
-__all__ = ["adopt", "adopt_groom", "is_finished_hair"]
+from ringlet.groom import adopted
+from ringlet.groom.operators import Context, Drawn, Resample
+from ringlet.groom.scalp import Scalp
+from ringlet.io.formats import joined
 
 MOST_POINTS = 160  # of a hair that is adopted
 FEWEST_POINTS = 24
@@ -86,9 +91,6 @@ def adopt(
     ``width`` and ``pitch`` [m] and the share ``right_handed`` of these, and ``error``: the median and the 95th
     percentile of the distances between the hair as it was and as the recipe makes it [m].
     """
-    from ringlet import io
-    from ringlet.adoption import find_clumps
-
     target = Path(recipe)
     if target.suffix != ".toml":
         raise UserError(f"{target}: ends in '{target.suffix}'; must end in .toml")
@@ -144,10 +146,6 @@ def adopt_groom(
     locks:     a number of locks, whose middle hairs are simulated, and carry the others
     head, mesh, source_unit, source_up: as for ``adopt``
     """
-    from ringlet import io
-    from ringlet.adoption import each_alone, find_clumps
-    from ringlet.adoption.coil import no_coils
-
     target = Path(source).absolute().with_suffix(".recipe.toml")
     files = {name: target.with_suffix(f".{name}.usdc") for name in ("guides", "hairs", "scalp")}
     hair, scalp, table, prim = _read(source, head, mesh, source_space_of(source, source_unit, source_up), files)
@@ -169,8 +167,6 @@ def adopt_groom(
 
 def is_finished_hair(path: Path | str) -> bool:
     """Whether a file holds curves that are no groom of Ringlet's."""
-    from ringlet import io
-
     if Path(path).suffix.lower() in (".abc", ".hair", ".tfx", ".obj"):
         return True
     return Path(path).suffix.lower() in (".usd", ".usda", ".usdc", ".usdz") and not io.is_groom(path)
@@ -180,9 +176,6 @@ def _read(
     source: Path | str, head: Path | str | None, mesh: str | None, space: StageSpace | None, files: dict[str, Path]
 ) -> tuple[_Hair, Mesh, dict[str, Any], str | None]:
     """The hairs, the scalp, the table of the recipe that names it, and its prim where it is one of the source."""
-    from ringlet import io
-    from ringlet.io.formats import joined
-
     with io.open_scene(source, space) as scene:
         if not scene.sets:
             raise UserError(f"{source}: has no curves; export the hair as curves or choose another file")
@@ -196,7 +189,6 @@ def _read(
     if Path(source).suffix.lower().startswith(".usd") and bodies:
         near = min(io.read_bodies(source), key=lambda body: _median_distance(body.mesh, roots))
         return hair, near.mesh, {"file": files["scalp"].name, "mesh": io.head_path(near.prim)}, near.prim
-    from ringlet.adoption.scalp import scalp_of_roots
 
     own = min(bodies, key=lambda body: _median_distance(body, roots)) if bodies else scalp_of_roots(roots, str(source))
     return hair, replace(own, name="scalp"), {"file": files["scalp"].name}, None
@@ -209,8 +201,6 @@ def _relative(path: Path | str, neighbour: Path) -> str:
 
 def _root_distances(mesh: Mesh, roots: NDArray) -> NDArray[np.float64]:
     """Distances of roots from a mesh [m], shape (k,)."""
-    from ringlet import _core
-
     return _core.bind_roots(mesh.points, mesh.triangles, np.ascontiguousarray(roots, np.float64))[2]
 
 
@@ -232,8 +222,6 @@ def _resampled(curves: Curves) -> _Hair:
 
 def _guides(hair: _Hair, clumps: Clumps, scalp: Mesh) -> tuple[Curves, Coils]:
     """The centre lines of the locks, with what was fitted to each as attributes."""
-    from ringlet.adoption import fit_coils
-
     target = hair.points[clumps.middle]
     coils = fit_coils(target)
     along = Resampling(_packed(coils.center), SHAPE_POINTS)
@@ -300,12 +288,7 @@ def _fitted(text: str, path: Path, scalp: Mesh, guides: Curves, target: NDArray[
 
     target: points of the locks as they were [m], evenly spaced, shape (locks, k, 3)
     """
-    from ringlet import groom
-    from ringlet.groom import adopted
-    from ringlet.groom.operators import Context, Drawn, Resample
-    from ringlet.groom.scalp import Scalp
-
-    recipe = groom.parse_recipe(text, path)
+    recipe = grooms.parse_recipe(text, path)
     assert isinstance(recipe.guides, Drawn)
     surface, points = Scalp(scalp, None), recipe.locks.points
     context = Context(recipe.seed, surface, "curl", points)
@@ -320,15 +303,11 @@ def _fitted(text: str, path: Path, scalp: Mesh, guides: Curves, target: NDArray[
         shapes.curve[PHASE] = guides.curve[PHASE] = turned.astype(np.float32)
         curled = curl.apply(shapes, context)
     guides.curve[OFFSETS] = adopted.residual_of(wanted, curled, shapes, context)
-    return groom.make_groom(recipe, scalp, drawn_guides=guides)
+    return grooms.make_groom(recipe, scalp, drawn_guides=guides)
 
 
 def _add_hairs(groom: Groom, hair: _Hair, clumps: Clumps) -> NDArray[np.float64]:
     """Gives a groom its hairs; returns how far what they were is from them [m], shape (hairs, points)."""
-    from ringlet import groom as grooms
-    from ringlet.data.random import Random
-    from ringlet.groom import adopted
-
     shuffled = Random(1, "adopt").uniform(np.arange(len(clumps.of)))
     shuffled[clumps.middle] = -1.0
     order = np.lexsort((shuffled, clumps.of))
@@ -359,9 +338,6 @@ def distances(points: NDArray[np.float64], lines: NDArray[np.float64]) -> NDArra
 
 def _write(groom: Groom, guides: Curves, text: str, recipe: Path, files: dict[str, Path], *, with_scalp: bool) -> None:
     """Writes the files of an adopted groom, the recipe last; ``with_scalp`` also its scalp."""
-    from ringlet import io
-    from ringlet.data.hair_scene import CurveSet, HairScene
-
     assert groom.offsets is not None
     recipe.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=".adopt.", dir=recipe.parent) as folder:

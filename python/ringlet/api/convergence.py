@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
 
 from ringlet.api import shots
 from ringlet.api.progress import Progress
+from ringlet.data.convergence import Convergence
 from ringlet.data.errors import UserError
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from ringlet.data.convergence import Convergence
-    from ringlet.data.groom import Groom
-    from ringlet.shot.shot import Shot
-
-__all__ = ["converge", "convergence_table", "lock_motion", "tip_distance", "write_convergence"]
+from ringlet.data.groom import Groom
+from ringlet.report.convergence import COLUMNS, advice, rows, write_page
+from ringlet.shot.shot import Shot
+from ringlet.sim import convergence
 
 FRAMES = 8  # that are compared by default
 
@@ -39,8 +36,6 @@ def converge(
 
     Raises UserError for frames outside the shot's.
     """
-    from ringlet.sim.convergence import converge as compare
-
     shot = shot if not isinstance(shot, str | Path) else shots.read_shot(shot)
     begin, end = shot.frames
     first, last = frames or (begin, min(begin + FRAMES, end))
@@ -49,20 +44,16 @@ def converge(
             f"converge: frames are {first}:{last}; must be two frames or more of the shot's, which are {begin}:{end}"
         )
     motion = shots.start_motion(shot, groom or shot.groom, allow_stale=allow_stale)
-    return compare(motion, (first, last), enough=enough, progress=progress)
+    return convergence.converge(motion, (first, last), enough=enough, progress=progress)
 
 
 def convergence_table(result: Convergence) -> tuple[list[str], list[list[str]], str]:
     """Columns and rows of what ``converge`` found, and what to do, in words."""
-    from ringlet.report.convergence import COLUMNS, advice, rows
-
     return COLUMNS, rows(result), advice(result)
 
 
 def write_convergence(result: Convergence, path: Path | str, title: str = "converge") -> None:
     """Writes what ``converge`` found as a page of numbers and charts."""
-    from ringlet.report.convergence import write_page
-
     write_page(result, Path(path), title)
 
 
@@ -72,9 +63,7 @@ def lock_motion(points: NDArray[np.float64], offsets: NDArray[np.integer]) -> li
     points:  positions [m], shape (frames, n, 3)
     offsets: offsets of the locks, shape (locks + 1,)
     """
-    from ringlet.sim.convergence import lock_motion as measure
-
-    return measure(points, offsets)
+    return convergence.lock_motion(points, offsets)
 
 
 def tip_distance(points: NDArray[np.float64], offsets: NDArray[np.integer]) -> list[float]:
@@ -83,6 +72,4 @@ def tip_distance(points: NDArray[np.float64], offsets: NDArray[np.integer]) -> l
     points:  positions [m], shape (frames, n, 3)
     offsets: offsets of the locks, shape (locks + 1,)
     """
-    from ringlet.sim.convergence import tip_distance as measure
-
-    return measure(points, offsets)
+    return convergence.tip_distance(points, offsets)

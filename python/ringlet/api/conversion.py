@@ -5,25 +5,24 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ringlet import io
 from ringlet.data import limits
 from ringlet.data.bounds import check_curves
 from ringlet.data.errors import UserError
 from ringlet.data.files import check_place
 from ringlet.data.frames import frames_within
+from ringlet.data.hair_scene import CurveSet, HairScene
+from ringlet.data.random import Random
 from ringlet.data.reads import recorded
 from ringlet.data.resampling import Resampling
 from ringlet.data.stage import StageSpace
-
-if TYPE_CHECKING:
-    from ringlet.data.hair_scene import CurveSet, HairScene
-    from ringlet.io import Rod
-
-__all__ = ["convert"]
+from ringlet.io import Rod
+from ringlet.shot import read_shot
 
 SEED = 1  # of the choice of strands
 
@@ -65,8 +64,6 @@ def convert(
     Returns numbers of ``hairs``, ``guides``, ``points``, ``bodies`` and ``frames`` that were written, the ``unit`` [m]
     and the axis ``up``, and ``lost``: a sentence for each thing that the format cannot hold.
     """
-    from ringlet import io
-
     limits.check_count("points", 2 if points is None else points - 1, limits.POINTS - 1)
     if not 0.0 < fraction <= 1.0:
         raise UserError(f"fraction is {fraction:g}; must be more than 0 and at most 1")
@@ -110,9 +107,6 @@ def convert(
 
 def _rod(shot: Path | str, target: Path | str, frames: tuple[int, int] | None) -> Rod:
     """The material of a shot's strands, for a target that holds rods; raises UserError for another target."""
-    from ringlet import io
-    from ringlet.shot import read_shot
-
     if io.format_of(target).name != "USD":
         raise UserError(f"{target}: holds no deformable curves; must be a .usdc, .usd or .usda file")
     if frames is not None:
@@ -145,8 +139,6 @@ def source_space_of(source: Path | str, unit: float | None, up: Literal["Y", "Z"
 
     Raises UserError where one is given for a format that stores it.
     """
-    from ringlet import io
-
     if unit is None and up is None:
         return None
     default = io.format_of(source).space
@@ -166,8 +158,6 @@ def _chosen(scene: HairScene, only: str | None, source: Path | str) -> list[Curv
 
 def _thinned(one: CurveSet, fraction: float, wider: bool, points: int | None) -> CurveSet:
     """A share of the curves, with other numbers of points."""
-    from ringlet.data.random import Random
-
     curves, steps = one.curves, list[Callable[[NDArray], NDArray]]()
     if fraction < 1.0:
         order = Random(SEED, "convert").uniform(curves.ids)

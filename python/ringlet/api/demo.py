@@ -7,16 +7,15 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from ringlet import api
+from ringlet.api.grooms import build_groom, write_groom
+from ringlet.api.hairs import write_hairs
+from ringlet.api.pictures import write_sheet, write_still
+from ringlet.api.progress import Progress
 from ringlet.api.run import Run
+from ringlet.api.shots import loft, read_shot, write_loft, write_simulation
 from ringlet.data.share import share
-
-if TYPE_CHECKING:
-    from ringlet.shot import Shot
-
-__all__ = ["run_demo"]
+from ringlet.shot import Shot
 
 FIRST_FRAME = 1  # of the clip; before it the ribbon is put into the hair
 STILL_FRAME = 22  # in the middle of the quick turn
@@ -31,7 +30,7 @@ TRUSTED = 1.0  # seconds of work that say how fast this machine is
 
 
 def run_demo(
-    folder: Path | str, *, progress: api.Progress | None = None, show: Callable[[Path], None] | None = None
+    folder: Path | str, *, progress: Progress | None = None, show: Callable[[Path], None] | None = None
 ) -> Run:
     """Grooms, simulates and pictures the example; writes everything, and the report, to ``folder``.
 
@@ -44,15 +43,15 @@ def run_demo(
     overall = Overall(progress)
     with Run("demo", folder) as run:
         with run.stage("groom", groom_file, "groom guides over the head"):
-            groom = api.build_groom(example / "ribbon.recipe.toml", progress=overall.of("groom"))
-            api.write_groom(groom, groom_file)
+            groom = build_groom(example / "ribbon.recipe.toml", progress=overall.of("groom"))
+            write_groom(groom, groom_file)
             run.count(guides=len(groom.guides), locks=len(groom.locks))
-        shot = balanced(api.read_shot(example / "ribbon.shot.toml"), rest_file)
+        shot = balanced(read_shot(example / "ribbon.shot.toml"), rest_file)
         with run.stage("loft", rest_file, "the shape that guides remember, with which they hang as groomed"):
-            api.write_loft(api.loft(shot, groom, progress=overall.of("loft")), shot, rest_file)
+            write_loft(loft(shot, groom, progress=overall.of("loft")), shot, rest_file)
         with run.stage("simulate", cache_file, "the guides and a ribbon in motion"), _aside(folder) as checkpoints:
             inner = overall.of("simulate")
-            record = api.write_simulation(shot, groom, groom_file, cache_file, checkpoints=checkpoints, progress=inner)
+            record = write_simulation(shot, groom, groom_file, cache_file, checkpoints=checkpoints, progress=inner)
             run.count(frames=len(record.frames))
             run.simulated(record)
         with (
@@ -60,8 +59,8 @@ def run_demo(
             _aside(folder) as aside,
         ):
             all_hairs = aside / "hair.usdc"
-            counts = api.write_hairs(groom_file, all_hairs, cache=cache_file, frames=(STILL_FRAME, STILL_FRAME))
-            api.write_still(
+            counts = write_hairs(groom_file, all_hairs, cache=cache_file, frames=(STILL_FRAME, STILL_FRAME))
+            write_still(
                 all_hairs,
                 still_file,
                 frame=STILL_FRAME,
@@ -76,12 +75,12 @@ def run_demo(
             show(still_file)
         with run.stage("hairs", hair_file, f"hairs in motion, {MOVING:.0%} of all, each wider"):
             inner, clip = overall.of("hairs"), (FIRST_FRAME, shot.frames[1])
-            api.write_hairs(
+            write_hairs(
                 groom_file, hair_file, cache=cache_file, frames=clip, fraction=MOVING, wider=True, progress=inner
             )
         with run.stage("sheet", sheet_file, "the clip at a glance"):
             title, inner = "A nod, a quick turn and a hop", overall.of("sheet")
-            api.write_sheet(hair_file, sheet_file, count=TILES, title=title, progress=inner)
+            write_sheet(hair_file, sheet_file, count=TILES, title=title, progress=inner)
             run.pictured(sheet_file, "The clip: a nod, a quick turn and a hop.")
     return run
 
@@ -104,13 +103,13 @@ class Overall:
     The still is limited in time, so a slow machine traces no longer, but fewer paths.
     """
 
-    def __init__(self, progress: api.Progress | None, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(self, progress: Progress | None, clock: Callable[[], float] = time.monotonic) -> None:
         self._progress, self._clock = progress, clock
         self._left = dict(SECONDS)
         self._began = clock()
         self._limited = 0.0  # seconds that the still has taken
 
-    def of(self, stage: str) -> api.Progress | None:
+    def of(self, stage: str) -> Progress | None:
         """What the stage that begins reports to; those before it are done."""
         if self._progress is None:
             return None

@@ -16,11 +16,10 @@ from typing import Any
 
 import numpy as np
 
-from ringlet import _core, api
-from ringlet.data.curves import Curves
+import ringlet
+from ringlet import _core
+from ringlet.api.progress import Progress
 from ringlet.data.share import share
-
-__all__ = ["Finding", "diagnose"]
 
 ENOUGH_MEMORY = 4 * 2**30  # for the example and its picture
 PICTURE = 96  # height of the self-test's picture [pixels]
@@ -44,7 +43,7 @@ class Finding:
         return asdict(self)
 
 
-def diagnose(*, self_test: bool = True, progress: api.Progress | None = None) -> list[Finding]:
+def diagnose(*, self_test: bool = True, progress: Progress | None = None) -> list[Finding]:
     """Checks the installation and, with ``self_test``, grooms, simulates, writes, reads and draws a little."""
     looks = [
         _ringlet,
@@ -62,7 +61,7 @@ def diagnose(*, self_test: bool = True, progress: api.Progress | None = None) ->
     tests: list[Callable[[Path], Finding]] = (
         [_test_core, _test_contact, _test_files, _test_picture] if self_test else []
     )
-    findings = [look() for look in looks]
+    findings = [_guarded(look) for look in looks]
     with tempfile.TemporaryDirectory(prefix="ringlet-") as folder:
         for done, test in enumerate(tests):
             if progress:
@@ -111,9 +110,8 @@ def _package(name: str) -> Callable[[], Finding]:
 
 
 def _pardiso() -> Finding:
-    from ringlet.sim.direct import open_pardiso  # imported late, since it loads all of the simulation
-
-    if open_pardiso():
+    one = np.zeros(1, int)
+    if ringlet.DirectSolver(one, one, rows=1, block=1).method == "pardiso":
         return Finding("MKL PARDISO", "ok", "opened")
     return Finding(
         "MKL PARDISO", "optional", "is not installed", "for large direct solves: pip install 'ringlet[direct]'"
@@ -143,19 +141,20 @@ def _page() -> Finding:
     return Finding("review page", "optional", "is not built", "for ringlet view, in a clone: make build")
 
 
-def _guarded(test: Callable[[Path], Finding], folder: Path) -> Finding:
-    """The finding of a test, also where it breaks off."""
+def _guarded(look: Callable[..., Finding], *folder: Path) -> Finding:
+    """The finding of a look or a test, also where it breaks off, such as without a package that it loads."""
     try:
-        return test(folder)
+        return look(*folder)
     except Exception as error:  # whatever it is, it is what was asked for
         remedy = "run it with --debug, and report what it prints"
-        return Finding(test.__name__.removeprefix("_test_"), "fails", f"{type(error).__name__}: {error}", remedy)
+        name = look.__name__.removeprefix("_test").strip("_")
+        return Finding(name, "fails", f"{type(error).__name__}: {error}", remedy)
 
 
 def _test_core(_: Path) -> Finding:
     """A cantilever against its known answer."""
     start = time.perf_counter()
-    rows = api.run_validation(["cantilever"])
+    rows = ringlet.run_validation(["cantilever"])
     held, took = sum(row.passed for row in rows), f"{time.perf_counter() - start:.1f} s"
     state = "ok" if held == len(rows) else "fails"
     remedy = "" if state == "ok" else "run: ringlet validate, and report it"
@@ -164,15 +163,12 @@ def _test_core(_: Path) -> Finding:
 
 def _test_contact(_: Path) -> Finding:
     """A strand that falls onto another has to stay above it."""
-    from ringlet.shot import Contact, Material
-    from ringlet.sim import Scene, Strands
-
     start = time.perf_counter()
     x = np.linspace(-0.02, 0.02, 9)
     below, above = np.c_[x, 0 * x, 0 * x], np.c_[0 * x, 0 * x + 5e-3, x]
     held = np.isin(np.arange(2 * len(x)), (0, 8, 9))
-    strands = Strands(Curves.from_list([below, above]), Material(bend_scale=0.0), held)
-    scene, touched = Scene(strands, contact=Contact()), False
+    strands = ringlet.Strands(ringlet.Curves.from_list([below, above]), ringlet.Material(bend_scale=0.0), held)
+    scene, touched = ringlet.Scene(strands, contact=ringlet.Contact()), False
     for _step in range(24):
         scene.step(strands.curves.points, 1 / 240, gravity=(0.0, -98.1, 0.0))
         touched = touched or len(scene.contacts[0]) > 0
@@ -190,9 +186,9 @@ def _test_files(folder: Path) -> Finding:
     """The example's groom, to USD and back."""
     start = time.perf_counter()
     recipe = share("examples/child") / "curls.recipe.toml"
-    groom = api.build_groom(recipe)
-    api.write_groom(groom, folder / "groom.usdc")
-    off = np.abs(api.read_groom(folder / "groom.usdc").locks.points - groom.locks.points).max()
+    groom = ringlet.build_groom(recipe)
+    ringlet.write_groom(groom, folder / "groom.usdc")
+    off = np.abs(ringlet.read_groom(folder / "groom.usdc").locks.points - groom.locks.points).max()
     same = bool(off < 1e-6)
     found = f"{len(groom.locks):,} locks groomed, written and read, {time.perf_counter() - start:.1f} s"
     remedy = "" if same else f"points come back {off:.2g} m away; report it"
@@ -202,8 +198,8 @@ def _test_files(folder: Path) -> Finding:
 def _test_picture(folder: Path) -> Finding:
     """A small picture of that groom."""
     start = time.perf_counter()
-    api.write_hairs(folder / "groom.usdc", folder / "hair.usdc", fraction=0.01)
+    ringlet.write_hairs(folder / "groom.usdc", folder / "hair.usdc", fraction=0.01)
     path = folder / "still.png"
-    api.write_still(folder / "hair.usdc", path, width=PICTURE * 3 // 4, height=PICTURE, samples=2)
+    ringlet.write_still(folder / "hair.usdc", path, width=PICTURE * 3 // 4, height=PICTURE, samples=2)
     found = f"drawn, {path.stat().st_size / 1024:.0f} kB, {time.perf_counter() - start:.1f} s"
     return Finding("picture", "ok", found)

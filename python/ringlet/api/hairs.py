@@ -6,28 +6,26 @@ import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ringlet import groom as grooms
+from ringlet import io
+from ringlet.api.caches import scalp_clip
 from ringlet.api.grooms import read_groom
 from ringlet.api.progress import Progress, stage
-from ringlet.api.shots import scalp_clip
 from ringlet.data import limits
 from ringlet.data.binding import check_roots, root_places
 from ringlet.data.detail import LEVELS, screen_share
 from ringlet.data.errors import UserError
+from ringlet.data.groom import Groom
+from ringlet.data.mesh import Clip
 from ringlet.data.reads import recorded
 from ringlet.deform.lengths import HairLengths
-
-if TYPE_CHECKING:
-    from ringlet.data.groom import Groom
-    from ringlet.data.mesh import Clip
-    from ringlet.groom import AnyHairs, Memory
-    from ringlet.io import CacheFile
-
-__all__ = ["build_hairs", "measure_hairs", "write_hairs"]
+from ringlet.groom import AnyHairs, Memory
+from ringlet.io import CacheFile
 
 
 def build_hairs(
@@ -47,8 +45,6 @@ def build_hairs(
     memory: that of ``build_groom``: hairs are only carried along when nothing but the shape of locks has changed, and
             the next call writes over their points
     """
-    from ringlet import groom as grooms
-
     return grooms.make_hairs(
         groom,
         fraction=fraction,
@@ -71,9 +67,6 @@ def measure_hairs(
     variant: of the groom file, in place of the one that is selected in it
     hairs:   all hairs of the groom, where they are made already
     """
-    from ringlet import groom as grooms
-    from ringlet.data.groom import Groom
-
     made = groom if isinstance(groom, Groom) else read_groom(groom, variant=variant)
     return grooms.hair_measures(made, hairs.curves if hairs is not None else None)
 
@@ -129,8 +122,6 @@ def write_hairs(
 
     Returns how many ``locks``, ``hairs``, ``points`` and ``frames`` there are; hairs and points of the finest level.
     """
-    from ringlet import io
-
     _refuse_together(lod=lod, on_demand=on_demand, camera=camera is not None, fraction=fraction < 1.0)
     _refuse_together(on_demand=on_demand, velocities=velocities)
     limits.check_count("points", 2 if points is None else points - 1, limits.POINTS - 1)
@@ -221,8 +212,6 @@ def _refuse_together(**asked: bool) -> None:
 
 
 def _surfaces_at_rest(groom: Path | str, locks: Groom) -> list[tuple[NDArray, NDArray]]:
-    from ringlet import io
-
     shown = io.read_meshes(groom) or [locks.scalp]  # a head of an OBJ is in no stage
     return [(mesh.points, mesh.triangles) for mesh in shown]
 
@@ -232,8 +221,6 @@ def _motion(
     groom: Path | str, cache: Path | str | None, locks: Groom, frames: tuple[int, int] | None
 ) -> Iterator[tuple[int, Iterator[_Motion]]]:
     """The number of frames of a cache, and what carries hairs at each; none without a cache."""
-    from ringlet import io
-
     if cache is None:
         yield 0, iter(())
         return
@@ -245,8 +232,6 @@ def _motion(
 
 def _made_frames(groom: Path | str) -> tuple[int, int] | None:
     """First and last frame of hairs on demand in a file; None for another file."""
-    from ringlet import io
-
     if not io.has_hairs_on_demand(groom):
         return None
     made = io.read_hair_frames(groom)
@@ -280,8 +265,6 @@ def _share_of_camera(
 
     Raises UserError where no lock is in front of it.
     """
-    from ringlet import io
-
     sample = build_hairs(locks, fraction=0.001)
     width = float(np.median(sample.curves.point["width"].reshape(len(sample.curves), -1).max(axis=1)))
     under = groom if cache is None else cache

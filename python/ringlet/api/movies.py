@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from ringlet import io, picture
 from ringlet.api.pictures import first_frame, lock_points, pose_at, shutter_poses
 from ringlet.api.progress import Progress
 from ringlet.data import limits
@@ -13,11 +14,7 @@ from ringlet.data.errors import UserError
 from ringlet.data.frames import frames_within
 from ringlet.data.picture import PictureSettings
 from ringlet.data.reads import recorded
-
-if TYPE_CHECKING:
-    from ringlet.picture import Movie, Pose
-
-__all__ = ["write_movie", "write_turntable"]
+from ringlet.picture import Movie, Pose
 
 TURNTABLE_FPS = 24.0
 
@@ -40,8 +37,6 @@ def write_movie(
     frames:   first and last; all by default
     settings: those of ``PictureSettings``
     """
-    from ringlet import io, picture
-
     stage, path, look = Path(stage), Path(path), PictureSettings.of(settings)
     picture.check_output(path, look)
     if not len(held := io.read_hair_frames(stage)):
@@ -76,8 +71,6 @@ def write_turntable(
     views:    their number, counter-clockwise from above
     settings: those of ``PictureSettings``, without a camera of the stage, a lock, and motion blur
     """
-    from ringlet import picture
-
     stage, path, look = Path(stage), Path(path), PictureSettings.of(settings)
     limits.check_count("views", views, limits.FRAMES)
     for name in ("camera", "look_at", "shutter"):

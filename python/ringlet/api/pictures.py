@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ringlet import groom as grooms
+from ringlet import io, picture
 from ringlet.api.grooms import read_groom
 from ringlet.api.hairs import build_hairs
 from ringlet.api.progress import Progress
@@ -18,13 +20,8 @@ from ringlet.data.frames import frames_within
 from ringlet.data.picture import PictureSettings
 from ringlet.data.reads import recorded
 from ringlet.data.settings import check_name
-
-if TYPE_CHECKING:
-    from ringlet.picture import Pose
-    from ringlet.rest.loft import Loft
-
-__all__ = ["write_loft_picture", "write_sheet", "write_still", "write_touches_picture"]
-
+from ringlet.picture import Pose
+from ringlet.rest.loft import Loft
 
 LOCK_WIDTH = 8e-4  # of locks among their contacts: thinner ones are lost before skin in a quick picture [m]
 SHEET_SETTINGS = ("view", "color", "light", "light_turn")  # that a sheet takes
@@ -46,8 +43,6 @@ def write_still(
     frame:    the first of the stage by default
     settings: those of ``PictureSettings``: ``width=480, samples=16, view="side", light="window"``
     """
-    from ringlet import picture
-
     stage, chosen = Path(stage), PictureSettings.of(settings)
     frame = first_frame(stage, frame)
     pose = pose_at(stage, frame, chosen.camera)
@@ -75,8 +70,6 @@ def write_touches_picture(
     frame: the first by default
     settings: those of ``PictureSettings``; locks are black
     """
-    from ringlet import io, picture
-
     chosen = PictureSettings.of(settings | {"color": "black"})
     if chosen.shutter:
         raise UserError("picture: contacts have no motion blur; leave out the shutter")
@@ -118,8 +111,6 @@ def write_sheet(
 
     settings: ``view``, ``color``, ``light`` and ``light_turn`` of ``PictureSettings``
     """
-    from ringlet import io, picture
-
     look = PictureSettings.of(settings)
     look.refuse_all_but(SHEET_SETTINGS, "a sheet of small pictures")
     if not len(held := io.read_hair_frames(Path(stage))):
@@ -145,9 +136,6 @@ def write_loft_picture(
     progress: Progress | None = None,
 ) -> None:
     """Draws the hair as groomed, as it hangs without the loft, where that is known, and with it, on one page."""
-    from ringlet import groom as grooms
-    from ringlet import picture
-
     groom = loft.groom
     hairs = build_hairs(groom, fraction=min(1.0, 6000 / grooms.hair_count(groom)))
     shapes = {"groomed": groom.locks.points, "hanging, not lofted": loft.sagged, "hanging, lofted": loft.lofted}
@@ -164,8 +152,6 @@ def write_loft_picture(
 
 def first_frame(stage: Path, frame: float | None) -> float | None:
     """The frame of a picture, by default the first of the stage; None for static hair."""
-    from ringlet import io
-
     if not len(frames := io.read_hair_frames(stage)):
         return frame
     frame = float(frames[0]) if frame is None else frame
@@ -176,8 +162,6 @@ def first_frame(stage: Path, frame: float | None) -> float | None:
 
 def _posed(stage: Path, frame: float | None) -> tuple[list[Any], Any]:
     """Bodies and hairs of a stage at a frame, as the pictures take them."""
-    from ringlet import io, picture
-
     bodies, hairs, _ = io.read_stage(stage, frame)
     if hairs is None:
         raise UserError(f"{stage}: has no hairs; make them with: ringlet hair {stage} -o hair.usdc")
@@ -186,8 +170,6 @@ def _posed(stage: Path, frame: float | None) -> tuple[list[Any], Any]:
 
 def pose_at(stage: Path, frame: float | None, camera: str | None = None) -> Pose:
     """Bodies, hairs, and the camera if one is named, of a stage at a frame."""
-    from ringlet.picture import Pose
-
     return Pose(*_posed(stage, frame), _camera(stage, camera, frame))
 
 
@@ -196,8 +178,6 @@ def shutter_poses(stage: Path, frame: float | None, pose: Pose, settings: Pictur
 
     Raises UserError for motion blur of hair that does not move.
     """
-    from ringlet import io
-
     if not settings.shutter:
         return pose, None
     frames = io.read_hair_frames(stage)
@@ -211,8 +191,6 @@ def shutter_poses(stage: Path, frame: float | None, pose: Pose, settings: Pictur
 
 def _camera(stage: Path, prim: str | None, frame: float | None) -> Camera | None:
     """The camera of a stage at a frame, if one is named."""
-    from ringlet import io
-
     return None if prim is None else io.read_camera(stage, prim, frame)
 
 

@@ -1,4 +1,4 @@
-"""Known answers, benchmarks, schemas and threads."""
+"""Known answers and benchmarks."""
 
 from __future__ import annotations
 
@@ -6,27 +6,21 @@ import importlib.util
 import inspect
 import sys
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+from ringlet import validate
 from ringlet.api.progress import Progress
-from ringlet.data import limits
 from ringlet.data.settings import check_name
 from ringlet.data.share import share
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from ringlet.shot.solver import Solver
-    from ringlet.validate import Row
-
-__all__ = ["run_bench", "run_validation", "schema", "swing_nest", "use_threads"]
+from ringlet.shot.solver import Solver
+from ringlet.validate import Row, nest
 
 
 def run_validation(cases: Sequence[str] | None = None, *, progress: Progress | None = None) -> list[Row]:
     """Compares the simulator with known answers: all cases, or the named ones."""
-    from ringlet import validate
-
     chosen = list(validate.CASES) if cases is None else list(cases)
     for name in chosen:
         check_name(name, validate.CASES, "validate", "case")
@@ -63,21 +57,4 @@ def swing_nest(rings: int, solver: Solver | None = None, friction: float = 0.0) 
     rings:  of coils about the one in the middle: 1, 3, 5 and 8 are 7, 37, 91 and 217 coils
     solver: of every step; by default one that converges, the reference for others
     """
-    from ringlet.validate import nest
-
     return nest.tips(nest.locks(nest.hexagon(rings), nest.WIDTH), solver or nest.CONVERGED, friction)
-
-
-def schema() -> dict[str, Any]:
-    """JSON schemas of what people write: ``recipe`` and ``shot``."""
-    from ringlet import groom, shot
-
-    return {"recipe": groom.schema(), "shot": shot.schema()}
-
-
-def use_threads(count: int) -> None:
-    """Limits the core to so many threads; raises UserError for a count that no machine has."""
-    from ringlet import _core
-
-    limits.check_count("threads", count, limits.THREADS)
-    _core.set_thread_count(count)

@@ -10,15 +10,12 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Self
+from typing import Self
 
+from ringlet import _core, report
+from ringlet.data.cache import Cache, SimulationRecord
 from ringlet.data.files import check_place
-
-if TYPE_CHECKING:
-    from ringlet.data.cache import Cache, SimulationRecord
-    from ringlet.report import Verdict
-
-__all__ = ["Run"]
+from ringlet.report import Verdict, explain_slowest, judge, start_table, start_warnings
 
 FREE = "Contact was off: locks may pass through the head and one another. A table [contact] in the shot turns it on."
 CARRIED = "Locks touch, single hairs do not: they go with their lock, and may dip into what it touches."
@@ -94,8 +91,6 @@ class Run:
 
         Returns whether it can be used, and what to look at.
         """
-        from ringlet.report import explain_slowest, judge, start_table, start_warnings
-
         self.cache = cache
         self.slowest = explain_slowest(cache.statistics)
         self.warnings += [*start_warnings(cache.start), *cache.notes]
@@ -116,8 +111,6 @@ class Run:
         self.warnings.append(sentence)
 
     def _write_report(self, folder: Path) -> None:
-        from ringlet import _core, report
-
         report.write_report(
             report.RunReport(
                 name=self.name,

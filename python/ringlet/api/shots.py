@@ -1,4 +1,4 @@
-"""Shots, lofts and simulations, and the caches that they make."""
+"""Shots, lofts and simulations."""
 
 from __future__ import annotations
 
@@ -6,48 +6,29 @@ from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-import numpy as np
-
+from ringlet import io, rest, sim
+from ringlet import shot as shots
+from ringlet.api.caches import is_still, scalp_clip
 from ringlet.api.grooms import load_groom
 from ringlet.api.progress import OnFrame, Progress
+from ringlet.data.cache import Cache, SimulationRecord
 from ringlet.data.curves import Curves
 from ringlet.data.digest import digest
 from ringlet.data.errors import UserError
 from ringlet.data.files import check_place, same_place, within
+from ringlet.data.groom import Groom
 from ringlet.data.reads import recorded, unrecorded
-
-if TYPE_CHECKING:
-    from ringlet.data.cache import Cache, SimulationRecord
-    from ringlet.data.groom import Groom
-    from ringlet.data.mesh import Clip
-    from ringlet.io import CacheFile
-    from ringlet.rest.loft import Loft
-    from ringlet.shot import Shot
-    from ringlet.sim import Checkpoints, Garment, Motion, Obstacle
-
-__all__ = [
-    "discard_checkpoints",
-    "hold_checkpoints",
-    "loft",
-    "open_cache",
-    "read_cache",
-    "read_shot",
-    "rest_place",
-    "simulate",
-    "write_cache",
-    "write_loft",
-    "write_simulation",
-    "write_touches",
-]
+from ringlet.deform.orientation import outward
+from ringlet.rest.loft import Loft
+from ringlet.shot import Shot
+from ringlet.sim import Checkpoints, Garment, Motion, Obstacle
 
 
 def read_shot(path: Path | str) -> Shot:
     """Reads a shot from a TOML file, with every setting checked."""
-    from ringlet import shot
-
-    return shot.read_shot(Path(path))
+    return shots.read_shot(Path(path))
 
 
 def simulate(
@@ -70,9 +51,6 @@ def simulate(
     resume:      continue an interrupted run from its checkpoints, to the same bits
     touches:     keep the contacts of every frame, for ``write_touches``
     """
-    from ringlet import shot as shots
-    from ringlet import sim
-
     if not isinstance(shot, shots.Shot):
         shot = read_shot(shot)
     groom = _rounded(groom or shot.groom, progress)
@@ -119,9 +97,6 @@ def write_simulation(
     on_frame:    called with each frame's number and statistics, as soon as it is done
     on_warning:  called before the first frame with each sentence about settings or motion that make frames take long
     """
-    from ringlet import io, sim
-    from ringlet.data.cache import SimulationRecord
-
     io.check_target(path, under)
     groom = _rounded(groom)
     with recorded() as read:
@@ -162,8 +137,6 @@ def write_simulation(
 
 def _whole(path: Path | str, made_from: str) -> tuple[list[float], list[dict[str, Any]]] | None:
     """Frames and statistics of a cache that is made from the same; None for another one, and without one."""
-    from ringlet import io
-
     if not Path(path).exists():
         return None
     try:
@@ -188,15 +161,11 @@ def hold_checkpoints(folder: Path | str) -> AbstractContextManager[int]:
             )
             ringlet.discard_checkpoints("cache.usdc.part")
     """
-    from ringlet import sim
-
     return sim.locked_folder(Path(folder))
 
 
 def discard_checkpoints(folder: Path | str) -> None:
     """Removes the checkpoints of a run whose result has been written; a kill meanwhile leaves what can be resumed."""
-    from ringlet import sim
-
     with suppress(OSError):  # the result is there
         sim.discard(Path(folder))
 
@@ -206,8 +175,6 @@ def run_inputs(shot: Shot, groom: Groom, *, frames: tuple[int, int] | None = Non
 
     These are the settings, the groom, and the files that are read, by their contents.
     """
-    from ringlet import sim
-
     groom = _rounded(groom)
     with recorded() as read:
         _contents(shot, groom, False, frames)
@@ -216,8 +183,6 @@ def run_inputs(shot: Shot, groom: Groom, *, frames: tuple[int, int] | None = Non
 
 def can_resume(folder: Path | str, inputs: dict[str, Any]) -> bool:
     """Whether a folder has checkpoints of a run with the same inputs."""
-    from ringlet import sim
-
     before = sim.left_inputs(Path(folder))
     return before is not None and sim.changed_input(before, inputs) is None
 
@@ -233,8 +198,6 @@ def start_motion(
 
     on_warning: as for ``write_simulation``
     """
-    from ringlet import sim
-
     groom = _rounded(groom)
     contents = _contents(shot, groom, allow_stale)
     _warn_of_work(shot, groom, contents, shot.frames, on_warning)
@@ -248,8 +211,6 @@ def _warn_of_work(
     frames: tuple[int, int],
     on_warning: Callable[[str], None] | None,
 ) -> None:
-    from ringlet import sim
-
     if on_warning is not None:
         for sentence in sim.heavy_work(shot, groom, contents["clip"], contents["obstacles"], frames):
             on_warning(sentence)
@@ -260,9 +221,6 @@ def _rounded(groom: Groom | Path | str, progress: Progress | None = None) -> Gro
 
     Steps end before they converge to the last digit, and differences there grow.
     """
-    from ringlet import io
-    from ringlet.data.groom import Groom
-
     return io.as_written(groom if isinstance(groom, Groom) else load_groom(groom, progress=progress))
 
 
@@ -271,8 +229,6 @@ def _contents(shot: Shot, groom: Groom, allow_stale: bool, frames: tuple[int, in
 
     frames: in place of the shot's
     """
-    from ringlet import sim
-
     frames = frames or shot.frames
     sim.check_frames(*frames)
     clip, garments = scalp_clip(groom, frames), _garments(shot, groom, frames)
@@ -283,8 +239,6 @@ def _contents(shot: Shot, groom: Groom, allow_stale: bool, frames: tuple[int, in
 
 def _checkpoints(folder: Path | str, groom: Groom, inputs: dict[str, Any]) -> Checkpoints:
     """The checkpoints of a run."""
-    from ringlet import sim
-
     return sim.Checkpoints(Path(folder), inputs, every=sim.frames_between(len(groom.locks.points)))
 
 
@@ -302,9 +256,6 @@ def loft(
     known: a file that ``write_loft`` wrote: locks that have not changed since are taken from it
     sag:   find how the locks hang without the loft too, which equilibrium does not need
     """
-    from ringlet import io, rest
-    from ringlet import shot as shots
-
     if not isinstance(shot, shots.Shot):
         shot = read_shot(shot)
     groom = _rounded(groom or shot.groom, progress)
@@ -327,8 +278,6 @@ def rest_place(shot: Shot) -> Path:
 @recorded()
 def write_loft(loft: Loft, shot: Shot, path: Path | str) -> None:
     """Writes a rest shape, with all that it depends on, for ``simulate``."""
-    from ringlet import io, rest
-
     made_from = rest.dependencies(shot, _supporting_bodies(shot, loft.groom))
     io.write_rest(rest.to_curves(loft, shot), made_from, Path(path), loft.groom.space, around=loft.groom.scalp.points)
 
@@ -342,8 +291,6 @@ def _supporting_bodies(shot: Shot, groom: Groom) -> list[Obstacle]:
 
 def _rest_shape(shot: Shot, groom: Groom, obstacles: Sequence[Obstacle], allow_stale: bool) -> Curves | None:
     """The rest shape of the locks: None for the groom, or a stored one that fits."""
-    from ringlet import io, rest
-
     if shot.rest.mode == "none":
         return None
     if shot.rest_file is None:
@@ -358,39 +305,15 @@ def _rest_shape(shot: Shot, groom: Groom, obstacles: Sequence[Obstacle], allow_s
     )
 
 
-def scalp_clip(groom: Groom, frames: tuple[int, int] | None = None) -> Clip:
-    """The animation of the scalp of a groom at the rate of the groom; one from an OBJ file stands still.
-
-    frames: first and last frame; by default those of the head's stage
-    """
-    from ringlet import io
-    from ringlet.data.mesh import Clip
-
-    if groom.scalp_file is None:
-        raise UserError("groom: names no file for its scalp; write the head as USD and name it in the recipe")
-    if _is_still(groom):
-        return Clip(np.zeros(1), groom.scalp.points[None], groom.space.fps)
-    return io.read_clip(groom.scalp_file, groom.scalp_prim, frames, groom.space.fps, cage=groom.cage)
-
-
-def _is_still(groom: Groom) -> bool:
-    """Whether the scalp is of a file without animation."""
-    return groom.scalp_file is not None and groom.scalp_file.suffix.lower() == ".obj"
-
-
 def _obstacles(shot: Shot, groom: Groom, garments: Sequence[Garment], frames: tuple[int, int]) -> list[Obstacle]:
     """The obstacles of a shot at its frames; of several settings for one mesh the last counts."""
-    from ringlet import io, sim
-    from ringlet import shot as shots
-    from ringlet.deform.orientation import outward
-
     if not shot.touching:
         return []
     found: dict[tuple[Path, str], Obstacle] = {}
     for collider in shot.collider or (shots.Collider(),):
         file = collider.file or groom.scalp_file
         assert file is not None  # as for the scalp's clip
-        if collider.file is None and _is_still(groom):
+        if collider.file is None and is_still(groom):
             bodies = [io.Body(groom.scalp, scalp_clip(groom, frames), groom.scalp.name)]
         else:
             of_head = groom.scalp_file is not None and file.resolve() == groom.scalp_file.resolve()
@@ -410,16 +333,13 @@ def _obstacles(shot: Shot, groom: Groom, garments: Sequence[Garment], frames: tu
 
 def _untouched(shot: Shot, groom: Groom) -> list[str]:
     """A sentence for each visible surface in the files of a shot's colliders that hair does not touch."""
-    from ringlet import io
-    from ringlet import shot as shots
-
     if not shot.touching:
         return []
     named = [one.mesh for one in (*shot.collider, *shot.cloth) if one.mesh is not None]
     notes = list[str]()
     for collider in shot.collider or (shots.Collider(),):
         file = collider.file or groom.scalp_file
-        if file is not None and not (collider.file is None and _is_still(groom)):
+        if file is not None and not (collider.file is None and is_still(groom)):
             notes += io.unread_surfaces(file, collider.mesh, [name for name in named if name != collider.mesh])
     return list(dict.fromkeys(notes))
 
@@ -435,8 +355,6 @@ def cloths_and_colliders(shot: Shot, groom: Groom) -> tuple[list[Garment], list[
 
 def _garments(shot: Shot, groom: Groom, frames: tuple[int, int]) -> list[Garment]:
     """The meshes that become cloth in a shot, at its frames."""
-    from ringlet import io, sim
-
     garments: list[Garment] = []
     for cloth in shot.cloth:
         file = cloth.file or groom.scalp_file
@@ -453,43 +371,3 @@ def _garments(shot: Shot, groom: Groom, frames: tuple[int, int]) -> list[Garment
             raise UserError(f"shot: two cloths are called '{garment.name}'; give one of them another `name`")
         garments.append(garment)
     return garments
-
-
-@recorded()
-def write_cache(cache: Cache, groom: Path | str, path: Path | str, *, variant: str | None = None) -> None:
-    """Writes simulated guides as a USD layer over the file ``groom``, or over one of its variants."""
-    from ringlet import io
-
-    io.write_cache(cache, Path(groom), Path(path), io.read_space(Path(groom)), variant)
-
-
-@recorded()
-def write_touches(cache: Cache | SimulationRecord, cache_path: Path | str, path: Path | str) -> None:
-    """Writes the contacts of a simulation as coloured points: a USD layer over the file of its cache."""
-    from ringlet import io
-
-    io.write_touches(cache, Path(cache_path), Path(path), io.read_space(Path(cache_path)))
-
-
-def open_cache(path: Path | str) -> AbstractContextManager[CacheFile]:
-    """Opens simulated guides to read one frame at a time, however many there are.
-
-    The file has ``frames``, ``size`` (points of all locks), ``statistics`` and ``start``, and
-    ``points(frame)``: positions [m], shape (size, 3).
-
-    Example::
-
-        with ringlet.open_cache("cache.usdc") as cache:
-            for frame in cache.frames:
-                print(frame, cache.points(frame).max(axis=0))
-    """
-    from ringlet import io
-
-    return io.open_cache(Path(path))
-
-
-def read_cache(path: Path | str) -> Cache:
-    """Reads simulated guides that ``write_cache`` wrote, all frames of them."""
-    from ringlet import io
-
-    return io.read_cache(Path(path))

@@ -10,8 +10,6 @@ from ringlet.data.files import replacing
 from ringlet.data.regular import read_bytes, read_text
 from ringlet.data.upgrade import upgraded
 
-__all__ = ["Upgrade", "upgrade"]
-
 
 class Upgrade(NamedTuple):
     """What an upgrade changes.

@@ -23,7 +23,21 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ringlet import api
+from ringlet.api.caches import open_cache
+from ringlet.api.grooms import load_groom, write_groom
+from ringlet.api.hairs import write_hairs
+from ringlet.api.pictures import write_still
+from ringlet.api.shots import (
+    can_resume,
+    discard_checkpoints,
+    hold_checkpoints,
+    loft,
+    read_shot,
+    run_inputs,
+    write_loft,
+    write_simulation,
+)
+from ringlet.api.threads import use_threads
 from ringlet.data.digest import digest
 from ringlet.data.errors import UserError
 from ringlet.data.files import replacing
@@ -93,11 +107,11 @@ def run_task(task: Task, options: TaskOptions, progress: Progress | None = None)
     A task that is in progress in another process is refused, and its folder stays unchanged.
     """
     if options.threads:
-        api.use_threads(options.threads)
+        use_threads(options.threads)
     task.folder.mkdir(parents=True, exist_ok=True)
     with ExitStack() as lock:
         try:
-            lock.enter_context(api.hold_checkpoints(task.folder / PART))
+            lock.enter_context(hold_checkpoints(task.folder / PART))
         except UserError as error:
             return Result(task.settings, "refused", str(error), order=task.order)
         return _run(task, options, progress)
@@ -118,7 +132,7 @@ def _run(task: Task, options: TaskOptions, progress: Progress | None) -> Result:
         raise
     write_result(task.folder, result)
     if result.state == "done":
-        api.discard_checkpoints(task.folder / PART)
+        discard_checkpoints(task.folder / PART)
     log(f"ends after {time.perf_counter() - begin:.1f} s: {result.state}")
     return result
 
@@ -154,9 +168,9 @@ def _simulate(task: Task, options: TaskOptions, log: Log, progress: Progress) ->
     shot_file, cache, part = (task.folder / name for name in ("shot.toml", CACHE, PART))
     with replacing(shot_file) as aside:
         aside.write_text(task.shot, encoding="utf-8")
-    shot = api.read_shot(shot_file)
+    shot = read_shot(shot_file)
     groom, groom_file = _groom(shot, task.folder, log)
-    inputs = api.run_inputs(shot, groom, frames=options.frames)
+    inputs = run_inputs(shot, groom, frames=options.frames)
     made_from = digest(inputs, options.frames, options.frame, options.picture)
     previous = read_result(task.folder)
     if previous and previous.state == "done" and previous.made_from == made_from and _complete(task.folder, options):
@@ -164,7 +178,7 @@ def _simulate(task: Task, options: TaskOptions, log: Log, progress: Progress) ->
         return previous
 
     first, last = options.frames or shot.frames
-    resume = api.can_resume(part, inputs)
+    resume = can_resume(part, inputs)
     log(f"{'goes on with' if resume else 'simulates'} frames {first}:{last}, {len(groom.locks)} locks")
     begin, done = time.perf_counter(), 0
 
@@ -174,7 +188,7 @@ def _simulate(task: Task, options: TaskOptions, log: Log, progress: Progress) ->
         log(f"frame {frame:g}: {_one_line(statistics)}")
         progress(done, last - first + 1)
 
-    simulated = api.write_simulation(
+    simulated = write_simulation(
         shot,
         groom,
         groom_file,
@@ -202,14 +216,14 @@ def _complete(folder: Path, options: TaskOptions) -> bool:
 
 def _groom(shot: Shot, folder: Path, log: Log) -> tuple[Groom, Path]:
     """The groom of a shot and its USD file; writes the rest shape when the shot has one."""
-    groom, groom_file = api.load_groom(shot.groom), shot.groom
+    groom, groom_file = load_groom(shot.groom), shot.groom
     if shot.groom.suffix == ".toml":
         groom_file = folder / "groom.usdc"
-        api.write_groom(groom, groom_file)
+        write_groom(groom, groom_file)
     if shot.rest.mode != "none":
         assert shot.rest_file is not None
         log(f"lofts, for the rest shape '{shot.rest.mode}'")
-        api.write_loft(api.loft(shot, groom, known=shot.rest_file), shot, shot.rest_file)
+        write_loft(loft(shot, groom, known=shot.rest_file), shot, shot.rest_file)
     return groom, groom_file
 
 
@@ -246,7 +260,7 @@ def _numbers_of_motion(folder: Path, groom: Groom, cache: Path, frame: int) -> d
     """
     offsets = groom.locks.offsets
     extents: list[np.ndarray] = []  # distance from root to tip of each lock, by frame
-    with api.open_cache(cache) as simulated:
+    with open_cache(cache) as simulated:
         if frame not in simulated.frames:
             span = f"{simulated.frames[0]:g} to {simulated.frames[-1]:g}"
             raise UserError(f"wedge: frame {frame} is not among those simulated, {span}; choose another with --frame")
@@ -265,6 +279,6 @@ def _numbers_of_motion(folder: Path, groom: Groom, cache: Path, frame: int) -> d
 def _draw(folder: Path, groom: Groom, groom_file: Path, cache: Path, frame: int) -> None:
     hairs = folder / "hair.usdc"
     fraction = min(1.0, HAIRS / hair_count(groom))
-    api.write_hairs(groom_file, hairs, cache=cache, frames=(frame, frame), fraction=fraction, wider=True)
-    api.write_still(hairs, folder / "still.png", frame=frame, **PICTURE)
+    write_hairs(groom_file, hairs, cache=cache, frames=(frame, frame), fraction=fraction, wider=True)
+    write_still(hairs, folder / "still.png", frame=frame, **PICTURE)
     hairs.unlink()

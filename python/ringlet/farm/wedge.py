@@ -8,7 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ringlet import api
+from ringlet.api.progress import Progress
+from ringlet.api.shots import read_shot
 from ringlet.data import limits
 from ringlet.data.errors import UserError
 from ringlet.data.files import check_place
@@ -34,7 +35,7 @@ def wedge(
     workers: int | None = None,
     threads: int | None = None,
     retries: int = 2,
-    progress: api.Progress | None = None,
+    progress: Progress | None = None,
 ) -> list[dict[str, Any]]:
     """Simulates a shot with every combination of settings, and writes a page that compares them to ``folder``.
 
@@ -57,7 +58,7 @@ def wedge(
             limits.check_count(f"wedge: {what}", count, most)
     folder = Path(folder).absolute()
     tasks = make_tasks(Path(shot).absolute(), _choices(settings), folder)
-    record(*api.read_shot(shot).named_files().values())
+    record(*read_shot(shot).named_files().values())
     for task in tasks:
         for name in WRITTEN:
             refuse_inputs(task.folder / name)
@@ -114,7 +115,7 @@ def _no_progress(name: str, done: int, total: int) -> None:
     """Ignores progress."""
 
 
-def _task_progress(task: Task, progress: api.Progress | None) -> Any:
+def _task_progress(task: Task, progress: Progress | None) -> Any:
     return (lambda done, total: progress(task.name, done, total)) if progress else None
 
 

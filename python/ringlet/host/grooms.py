@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet import api
+from ringlet.api.grooms import build_groom, write_groom
+from ringlet.api.hairs import build_hairs
 from ringlet.api.progress import Progress
 from ringlet.data.curves import Curves
 from ringlet.data.groom import Groom
@@ -44,7 +45,7 @@ class Groomer:
         if request.folder != self._folder:
             self._folder, self._memory = request.folder, Memory()
         document = texts.apply("recipe", request.recipe, request.folder)
-        groom = api.build_groom(document.model, progress=progress, memory=self._memory)
+        groom = build_groom(document.model, progress=progress, memory=self._memory)
         answer: dict[str, Any] = {
             "text": document.text,
             "settings": texts.settings(document.model),
@@ -54,7 +55,7 @@ class Groomer:
         arrays = _curves("guides", groom.guides, groom) | _curves("locks", groom.locks, groom)
         shown = groom.locks
         if request.hairs is not None:
-            made = api.build_hairs(groom, fraction=request.hairs, wider=True, memory=self._memory)
+            made = build_hairs(groom, fraction=request.hairs, wider=True, memory=self._memory)
             shown = made.curves
             arrays |= _curves("hairs", shown, groom)
             answer["counts"]["hairs"] = len(shown)
@@ -96,13 +97,13 @@ def _curves(name: str, curves: Curves, groom: Groom) -> Arrays:
 def write(request: requests.WriteGroom, progress: Progress) -> dict[str, Any]:
     """Writes the groom of a recipe, with others as its variants, as USD."""
     recipe = texts.apply("recipe", request.recipe, request.folder).model
-    made = api.build_groom(recipe, progress=progress)
+    made = build_groom(recipe, progress=progress)
     stems = [one.name.removesuffix(".toml").removesuffix(".recipe") for one in request.variants]
     names = distinct(["base", *stems], lambda name: re.sub(r"[^\w-]", "_", name) or "_")[1:]  # as USD takes them
     variants = {
-        name: api.build_groom(texts.apply("recipe", one, request.folder).model, progress=progress)
+        name: build_groom(texts.apply("recipe", one, request.folder).model, progress=progress)
         for name, one in zip(names, request.variants, strict=True)
     }
     path = request.folder / request.file
-    api.write_groom(made, path, variants=variants)
+    write_groom(made, path, variants=variants)
     return {"path": str(path), "variants": list(variants), "conflicts": made.conflicts}

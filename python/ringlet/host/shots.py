@@ -6,8 +6,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from ringlet import api
+from ringlet.api import hairs
+from ringlet.api.grooms import build_groom
 from ringlet.api.progress import Progress
+from ringlet.api.shots import discard_checkpoints, hold_checkpoints, write_simulation
 from ringlet.data.files import check_place
 from ringlet.host import requests, texts
 from ringlet.report import judge, start_warnings
@@ -24,9 +26,9 @@ def simulate(request: requests.Simulate, progress: Progress, warn: Warn) -> dict
     layer = cache.with_suffix(f".groom{cache.suffix}")
     check_place(cache, shot.named_files())
     part = cache.with_name(f"{cache.name}.part")
-    with api.hold_checkpoints(part):
-        groom = api.build_groom(recipe, progress=progress)
-        record = api.write_simulation(
+    with hold_checkpoints(part):
+        groom = build_groom(recipe, progress=progress)
+        record = write_simulation(
             shot,
             groom,
             layer,
@@ -37,7 +39,7 @@ def simulate(request: requests.Simulate, progress: Progress, warn: Warn) -> dict
             progress=progress,
             on_warning=warn,
         )
-        api.discard_checkpoints(part)
+        discard_checkpoints(part)
     verdict = judge(record.statistics)
     notes = [*start_warnings(record.start), *record.notes, *(verdict.lines() if verdict.findings else [])]
     return {"path": str(cache), "frames": record.frames, "notes": notes, "locks": len(groom.locks)}
@@ -48,7 +50,7 @@ def left_steps(folder: Path, cache: str) -> int:
     part = folder / f"{cache}.part"
     if not part.is_dir():
         return 0
-    with api.hold_checkpoints(part) as left:
+    with hold_checkpoints(part) as left:
         return left
 
 
@@ -56,7 +58,7 @@ def write_hairs(request: requests.Hairs, progress: Progress) -> dict[str, Any]:
     """Writes the hairs of a cache."""
     cache, path = request.folder / request.cache, request.folder / request.file
     check_place(path, {"cache": cache})
-    counts = api.write_hairs(
+    counts = hairs.write_hairs(
         cache, path, fraction=request.fraction, wider=True, velocities=request.velocities, progress=progress
     )
     return {"path": str(path), "counts": counts}

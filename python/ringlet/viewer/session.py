@@ -11,7 +11,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from ringlet import api
+from ringlet.api.schema import schema
 from ringlet.data.errors import UserError
 from ringlet.data.former_names import note
 from ringlet.viewer import protocol
@@ -47,7 +47,7 @@ PATIENCE = 1.0  # that the end of the server waits for work in progress [s]
 @cache
 def schemas() -> dict[str, Any]:
     """JSON schemas of recipes and shots, made once: it takes half a second."""
-    return api.schema()
+    return schema()
 
 
 class Session:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ringlet import api
+from ringlet.api.caches import scalp_clip
 from ringlet.data.digest import digest
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Clip
@@ -137,7 +137,7 @@ class Playback:
             restart_frame = message.frame if message.action == "again_from" else None
             self._viewport.show_bodies(shot, self._stage.groom)
             self._stage.bodies = self._viewport.bodies
-            self._stage.clip = api.scalp_clip(self._stage.groom, shot.frames)
+            self._stage.clip = scalp_clip(self._stage.groom, shot.frames)
             self._simulation.start(shot, self._files.document("shot").text, self._stage, restart_frame)
 
     def set_groom(self, display: DisplayGroom) -> None:
@@ -151,7 +151,7 @@ class Playback:
                 self._viewport.show_bodies(self._files.shot, display.groom)
             except UserError as error:  # starting the shot raises it again
                 self._failed(str(error))
-            clip = api.scalp_clip(display.groom, self._files.shot.frames)
+            clip = scalp_clip(display.groom, self._files.shot.frames)
             self._stage = Stage(display.groom, display.hairs, clip, self._viewport.bodies)
         self.publish_timeline()
 
@@ -170,7 +170,7 @@ class Playback:
     def read(self, display: DisplayGroom) -> None:
         """Opens the frames of a USD file; does nothing for a file without frames."""
         static_clip = Clip(np.zeros(1), display.groom.scalp.points[None], 24.0)
-        clip = api.scalp_clip(display.groom) if display.groom.scalp_file else static_clip
+        clip = scalp_clip(display.groom) if display.groom.scalp_file else static_clip
         self._stage = Stage(display.groom, display.hairs, clip, self._viewport.bodies)
         try:
             self._shown.open(self._files.file, display, partial(self._stage.frame, "shot"))

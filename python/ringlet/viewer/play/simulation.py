@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet import api
+from ringlet.api.shots import start_motion
 from ringlet.data.errors import UserError
 from ringlet.data.precision import compact
 from ringlet.shot import Shot
@@ -137,7 +137,7 @@ class Simulation:
     def _simulate(self, run: Run) -> None:
         shot, stage, stopping = run.shot, run.stage, run.stopping
         first, last = shot.frames
-        motion = api.start_motion(shot, stage.groom, on_warning=self._failed)
+        motion = start_motion(shot, stage.groom, on_warning=self._failed)
         if run.checkpoint is not None:
             motion.recall(run.checkpoint)
         before = None if run.restart_frame is None else np.array(motion.points(run.restart_frame))

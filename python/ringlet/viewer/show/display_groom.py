@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet import api
+from ringlet.api.grooms import groom_inputs
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
@@ -191,7 +191,7 @@ class GroomEvaluator:
         drawn = recipe.guides if isinstance(recipe.guides, Drawn) else None
         key = repr((stamps, recipe.scalp, drawn, recipe.curves, recipe.meshes))
         if name not in self._inputs or self._inputs[name][0] != key:
-            self._inputs[name] = key, api.groom_inputs(recipe)
+            self._inputs[name] = key, groom_inputs(recipe)
         return self._inputs[name][1]
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ringlet import api
+from ringlet.api.hairs import build_hairs
 from ringlet.data.camera import Camera
 from ringlet.data.errors import UserError
 from ringlet.data.picture import PictureSettings
@@ -98,7 +98,7 @@ def pose_of(viewport: Viewport) -> Pose:
     bodies = [PosedBody(body.mesh, body.mesh.points) for body in viewport.bodies]
     if display.hairs is None:
         return Pose(bodies, display.groom.locks)
-    hairs = api.build_hairs(display.groom).curves
+    hairs = build_hairs(display.groom).curves
     return Pose(bodies, replace(hairs, points=np.asarray(hairs.points)))
 
 

@@ -12,7 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet import api, io
+from ringlet import io
+from ringlet.api.shots import cloths_and_colliders
 from ringlet.data.accessory import Accessory
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Clip, Mesh
@@ -113,7 +114,7 @@ def shot_meshes(shot: Shot, groom: Groom) -> list[VisibleMesh]:
     Raises UserError when a file of the shot cannot be read.
     """
     head = read_bodies(groom.scalp, groom.scalp_file, shot.frames, groom.space.fps, cage=groom.cage)
-    cloths, colliders = api.cloths_and_colliders(shot, groom)
+    cloths, colliders = cloths_and_colliders(shot, groom)
     head = [body for body in head if groom.shows(body.mesh.name)]
     of_head = {cloth.mesh.name for cloth in cloths if cloth.file == groom.scalp_file}
     bodies = [body for body in head if body.mesh.name not in of_head]
