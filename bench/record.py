@@ -1,7 +1,9 @@
 """Runs benchmarks and stores their results in bench/results, the source of all figures of the documents.
 
     .venv/bin/python bench/record.py twirl --strands 256 --threads 1
+    .venv/bin/python bench/record.py tools/proof/braids.py 48
 
+A name is that of a benchmark, or of a program that prints its result as JSON; programs are not measured by turns.
 Without arguments it measures all that are kept and whose sources have changed since. ``--from COMMIT`` before a name
 measures by turns with that commit, instead of the one measured last.
 """
@@ -10,6 +12,7 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import shutil
 import subprocess
 import sys
@@ -23,25 +26,42 @@ RESULTS = Path(__file__).with_name("results")
 ROOT = RESULTS.parents[1]
 CORE = ("src",)
 GROOM = (*CORE, *(f"python/ringlet/{name}" for name in ("data", "deform", "groom", "io")))
-UNTIMED = {"iterations", "liveliness", "nest", "tips"}  # what counts is the motion: nothing is gained by turns
-MEASURED = {"groom": GROOM, "slider": GROOM, "warp": GROOM, "collide": GROOM}  # folders, where not the core alone
+SIM = (*GROOM, "python/ringlet/sim")
+REST = (*SIM, "python/ringlet/rest")
+UNTIMED = {"iterations", "liveliness", "nest", "noise", "tips", "warp"}  # what counts is no time: no turns
+MEASURED = {  # folders, where not the core alone
+    "groom": GROOM,
+    "slider": GROOM,
+    "warp": SIM,
+    "collide": GROOM,
+    "hairs": GROOM,
+    "noise": ("python/ringlet/picture", "python/ringlet/deform"),
+    "rest": REST,
+    "adopt": (*GROOM, "python/ringlet/adoption"),
+    "braids": SIM,
+    "hair_intersections": SIM,
+    "rest_shapes": REST,
+}
 
 
 def record(arguments: list[str], reference: str | None = None) -> Path:
-    """Runs ``ringlet bench`` with arguments; returns the file with the result, the commit, the machine and the date.
+    """Runs a benchmark or a program; returns the file with the result, the commit, the machine and the date.
 
     reference: commit that it is measured by turns with; by default that of the result that is kept
     """
-    path = RESULTS / ("_".join(argument.removeprefix("--") for argument in arguments) + ".json")
+    first, *rest = arguments
+    name, program = Path(first).stem, first.endswith(".py")
+    path = RESULTS / ("_".join([name, *(word.removeprefix("--").replace(" ", "-") for word in rest)]) + ".json")
     kept = json.loads(path.read_text()) if path.exists() else {}
-    commit, sources = version(arguments[0])
+    commit, sources = version(name)
     ringlet = Path(sys.executable).with_name("ringlet")
-    command = [str(ringlet if ringlet.exists() else shutil.which("ringlet")), "bench", *arguments, "--json"]
+    bench = [str(ringlet if ringlet.exists() else shutil.which("ringlet")), "bench", *arguments, "--json"]
+    command = [sys.executable, *arguments] if program else bench
     load = os.getloadavg()[0]
     process = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True)
     RESULTS.mkdir(exist_ok=True)
     entry: dict[str, Any] = {
-        "command": " ".join(["ringlet", "bench", *arguments]),
+        "command": shlex.join([*(["python"] if program else ["ringlet", "bench"]), *arguments]),
         "commit": commit,
         "sources": sources,
         "date": date.today().isoformat(),
@@ -49,7 +69,7 @@ def record(arguments: list[str], reference: str | None = None) -> Path:
         "load": round(load, 1),
         "result": json.loads(process.stdout),
     }
-    if reference := reference or (None if arguments[0] in UNTIMED else kept.get("commit")):
+    if reference := reference or (None if program or name in UNTIMED else kept.get("commit")):
         turns = run((reference, " ".join(arguments)))[" ".join(arguments)]
         entry["reference"] = {"commit": reference, **{name: turns[name] for name in ("ratio", "least", "most")}}
     path.write_text(json.dumps(entry, indent=1) + "\n")
@@ -76,7 +96,7 @@ def stale() -> list[list[str]]:
     """The arguments of all results that are kept and not of the sources of today."""
     runs = [json.loads(path.read_text()) for path in sorted(RESULTS.glob("*.json"))]
     return [
-        run["command"].split()[2:]
+        shlex.split(run["command"].removeprefix("ringlet bench ").removeprefix("python "))
         for run in runs
         if any(run.get("sources", {}).get(folder) != tree(folder) for folder in run.get("sources", CORE))
     ]

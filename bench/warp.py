@@ -47,21 +47,21 @@ def run(
     with clock("both"):
         _, rest, simulated, warped_hairs = warped(locks, points, frames, nearest, bend_scale)
     before = measure(rest, points)
-    result = {}
     # Change of the curl by the motion itself: the first hair of a lock is the simulated guide.
     guide_change = np.repeat(
         np.stack(measure(simulated, points))[:, ::PER_LOCK] / np.stack(before)[:, ::PER_LOCK], PER_LOCK, axis=1
     )
     hair_change = np.stack(measure(simulated, points)) / np.stack(before)
     relative_change = np.delete(hair_change / guide_change, np.s_[::PER_LOCK], axis=1)
-    result["carried_beside_its_guide"] = {
+    beside_guide = {
         f"{name}_change_90_percent": float(np.percentile(np.abs(kept - 1.0), 90))
         for name, kept in zip(("radius", "bend", "length"), relative_change, strict=True)
     }
-    for name, hairs in (("carried", simulated), ("conventional", warped_hairs)):
+    methods = {}
+    for name, hairs in (("carried by simulated curls", simulated), ("displaced by straight guides", warped_hairs)):
         after = measure(hairs, points)
         moved = np.linalg.norm(hairs - rest, axis=1).reshape(-1, points)[:, -1]
-        result[name] = {
+        methods[name] = {
             "tips_moved_mm": 1e3 * float(np.median(moved)),
             "radius_kept_median": float(np.median(after[0] / before[0])),
             "radius_change_90_percent": float(np.percentile(np.abs(after[0] / before[0] - 1.0), 90)),
@@ -77,7 +77,8 @@ def run(
         hairs=len(rest) // points,
         radius_mm=1e3 * float(np.median(before[0])),
         turns=float(np.median(before[1])),
-        **result,
+        methods=methods,
+        carried_beside_its_guide=beside_guide,
     )
 
 

@@ -51,7 +51,8 @@ class Recorded(SphinxDirective):
     coils:,d | kept:.0%
     nest_rings_1_threads_1
     ```
-    ``NAME : PATH`` makes a row for each item of what is there; ``key`` is the name of the item.
+    ``NAME : PATH`` makes a row for each item of what is there; ``key`` is the name of the item. What an item does not
+    hold is looked up in the whole result.
     """
 
     has_content = True
@@ -67,7 +68,7 @@ class Recorded(SphinxDirective):
             run = json.loads((RESULTS / f"{name}.json").read_text())
             found = at(run["result"], path) if path else [run["result"]]
             for key, item in found.items() if isinstance(found, dict) else enumerate(found):
-                cells = [value(item | {"key": key}, column) for column in columns]
+                cells = [value(run["result"] | item | {"key": key}, column) for column in columns]
                 rows.append(cells)
             commands.setdefault(core_of(run, whole=False), []).append(run["command"])
         if empty := [path for path, *cells in zip(columns, *rows, strict=False) if {*cells} == {NOTHING}]:

@@ -1,4 +1,4 @@
-"""How well finished hair is adopted: grooms whose recipes are known, and files. Prints the table of docs/adopt.md.
+"""How well finished hair is adopted: grooms whose recipes are known, and files. Prints JSON.
 
 Usage: python tools/proof/adopt.py [--locks N] [FILE …]
 """
@@ -6,6 +6,7 @@ Usage: python tools/proof/adopt.py [--locks N] [FILE …]
 from __future__ import annotations
 
 import argparse
+import json
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -22,11 +23,10 @@ from ringlet.groom import Recipe
 TYPES = Path(__file__).parents[2] / "examples/types"
 KNOWN = ("3A", "3B", "3C", "4A", "4B")
 POINTS = 160  # of a lock that is fitted
-HEAD = ["hair", "hairs", "locks, found / made", "width", "pitch", "hand", "distance, median", "95 %"]
 
 
-def known(name: str, locks: int) -> list[str]:
-    """A row for a recipe of the examples with fewer locks: errors of each lock's width and pitch, median and 95 %."""
+def known(name: str, locks: int) -> dict[str, Any]:
+    """A recipe of the examples with fewer locks: errors of each lock's width and pitch, median and 95 %."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, "known.recipe.toml")
         path.write_text(
@@ -43,14 +43,19 @@ def known(name: str, locks: int) -> list[str]:
         value = {name: _values(recipe, groom, name) for name in ("width", "pitch", "right_handed")}
         right = soft_threshold(value["right_handed"], Random(recipe.seed, "curl/hand").uniform(groom.locks.ids)) > 0.5
         coiled = coils.width > 0.0
-        errors = [
-            np.abs(found / value[setting] - 1.0)[coiled]
+        errors = {
+            setting: np.abs(found / value[setting] - 1.0)[coiled]
             for found, setting in ((coils.width, "width"), (coils.pitch, "pitch"))
-        ]
-        hand = ((coils.hand > 0.0) == right)[coiled].mean()
-        cells = [f"{100 * np.median(error):.1f} %, {100 * np.quantile(error, 0.95):.1f} %" for error in errors]
-        found = f"{done['locks']} / {len(groom.locks)}"
-        return [f"`types/{name}`", str(done["hairs"]), found, *cells, f"{100 * hand:.0f} %", *_distances(done)]
+        }
+        return {
+            **_found(done),
+            "made": len(groom.locks),
+            "hand": float(((coils.hand > 0.0) == right)[coiled].mean()),
+            **{
+                name: {"median": float(np.median(error)), "95": float(np.quantile(error, 0.95))}
+                for name, error in errors.items()
+            },
+        }
 
 
 def _values(recipe: Recipe, groom: ringlet.Groom, name: str) -> np.ndarray:
@@ -61,28 +66,27 @@ def _values(recipe: Recipe, groom: ringlet.Groom, name: str) -> np.ndarray:
     return ramp * per_lock(recipe.curl, name, Random(recipe.seed, f"curl/{name}"), groom.locks, groom.scalp, name)
 
 
-def measured(path: Path) -> list[str]:
-    """A row for a file of hair."""
+def measured(path: Path) -> dict[str, Any]:
+    """A file of hair."""
     with tempfile.TemporaryDirectory() as folder:
-        done = ringlet.adopt(path, Path(folder, "a.recipe.toml"))
-    return [f"`{path.name}`", str(done["hairs"]), f"{done['locks']} / –", "–", "–", "–", *_distances(done)]
+        return _found(ringlet.adopt(path, Path(folder, "a.recipe.toml")))
 
 
-def _distances(done: dict[str, Any]) -> list[str]:
-    return [f"{1e3 * done['error'][name]:.2g} mm" for name in ("median", "95")]
+def _found(done: dict[str, Any]) -> dict[str, Any]:
+    """Hairs, locks, and the distances from the given hair [mm]."""
+    distances = {name: 1e3 * done["error"][name] for name in ("median", "95")}
+    return {"hairs": done["hairs"], "locks": done["locks"], "distance_mm": distances}
 
 
 def main() -> None:
-    """Prints the table."""
+    """Prints what was found for each recipe and file."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--locks", type=int, default=100)
     parser.add_argument("files", nargs="*", type=Path)
     options = parser.parse_args()
-    print(f"| {' | '.join(HEAD)} |\n|{'---|' * len(HEAD)}")
-    for name in KNOWN:
-        print(f"| {' | '.join(known(name, options.locks))} |", flush=True)
-    for path in options.files:
-        print(f"| {' | '.join(measured(path))} |", flush=True)
+    rows = {f"types/{name}": known(name, options.locks) for name in KNOWN}
+    rows |= {path.name: measured(path) for path in options.files}
+    print(json.dumps({"hair": rows}, indent=1))
 
 
 if __name__ == "__main__":

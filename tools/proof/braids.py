@@ -1,10 +1,11 @@
 """Braids, twists and tails of cornrows on the example's nodding head: the word of each, and how far strands leave it.
 
-Usage: python tools/proof/braids.py [FRAMES]
+Usage: python tools/proof/braids.py [FRAMES]. Prints JSON; ``radius`` is relative to the groom's.
 """
 
 from __future__ import annotations
 
+import json
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -139,12 +140,17 @@ def _radius(places: NDArray, strand: float) -> float:
 
 if __name__ == "__main__":
     frames = int(sys.argv[1]) if len(sys.argv) > 1 else 48
+    found = {}
     for style in SHAPES:
         states = list(played(*start(style), frames))
         radius = np.array([state.radius for state in states])
-        print(
-            f"{style}: {radius.shape[1]} of them, {len(states)} frames, {sum(s.crossings for s in states)} crossings, "
-            f"words changed at most {max(s.changed for s in states)}, "
-            f"radius over the groom's {np.median(radius):.3f} (median), {radius.max():.3f} (largest), "
-            f"over 1.2 in {np.mean(radius > 1.2):.1%}, strain at most {max(s.max_stretch for s in states):.3f}"
-        )
+        found[style] = {
+            "count": radius.shape[1],
+            "frames": len(states),
+            "crossings": sum(state.crossings for state in states),
+            "changed": max(state.changed for state in states),
+            "radius": {"median": float(np.median(radius)), "most": float(radius.max())},
+            "wide": float(np.mean(radius > 1.2)),
+            "max_stretch": float(max(state.max_stretch for state in states)),
+        }
+    print(json.dumps({"styles": found}, indent=1))

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from ringlet.api.caches import scalp_clip
+from ringlet.io import read_meshes
 from ringlet.sim.penetration import edge_triangle_intersections
 
 import ringlet
@@ -24,7 +25,8 @@ EXAMPLE = Path(__file__).parents[2] / "examples/child"
 def run(shot: str = "hat", frame: int = 20, repeats: int = 9) -> dict[str, Any]:
     """Simulates a shot of the example up to a frame and measures its hairs there.
 
-    ``before`` and ``after`` count, for each visible mesh, the edges away from the roots that intersect it.
+    ``surfaces`` has the meshes that hairs intersect, with the number of edges away from the roots that do: ``before``
+    and ``after`` the correction.
     ``jump_mm`` is the 99th percentile, over corrected points, of the change of the correction since the last frame.
     The stage ``carry`` moves hairs with their locks; ``keep`` also corrects intersections.
 
@@ -48,6 +50,7 @@ def run(shot: str = "hat", frame: int = 20, repeats: int = 9) -> dict[str, Any]:
         groom = ringlet.read_groom(under)
         hairs, clip = ringlet.build_hairs(groom), scalp_clip(groom)
         corrections: list[NDArray] = []
+        names = [mesh.name for mesh in read_meshes(cache)]
         with ringlet.open_cache(cache) as moved:
             for number in (frame - 1, frame):
                 points, scalp, beside = moved.points(number), clip.at(number), moved.surfaces(number)
@@ -61,11 +64,15 @@ def run(shot: str = "hat", frame: int = 20, repeats: int = 9) -> dict[str, Any]:
     hold = hairs.deformation(scalp)["hold"]
     corrected = np.linalg.norm(corrections[1], axis=1) > 1e-5
     jumps = 1e3 * np.linalg.norm(corrections[1] - corrections[0], axis=1)[corrected]
+    both = zip(*(intersections(hold, moved, beside) for moved in (hairs.deformed(points, scalp), out)), strict=True)
     counts = {
         "hairs": len(hairs.curves),
         "corrected": int(corrected.sum()),
-        "before": intersections(hold, hairs.deformed(points, scalp), beside),
-        "after": intersections(hold, out, beside),
+        "surfaces": {
+            name.rpartition("/")[2]: {"before": before, "after": after}
+            for name, (before, after) in zip(names, both, strict=True)
+            if before or after
+        },
         "jump_mm": float(np.quantile(jumps, 0.99)) if len(jumps) else 0.0,
     }
     return clock.result("beside", {"shot": shot, "frame": frame, "repeats": repeats}, per="keep", warm_up=1, **counts)

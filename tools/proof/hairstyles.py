@@ -55,6 +55,7 @@ lock_radius = "3.4 mm"
 root_radius = "9 mm"
 """
 
+PITCH = "[curl]\nwidth = 0.3\npitch = { value = 3.3, vary = 0.1 }\n"  # of the bun, whose curls begin at its tie
 CURL = "[curl]\nwidth = {}\ncurls = {{ value = {}, vary = 0.1 }}\n"
 BUN = """
 [[shape]]
@@ -71,7 +72,7 @@ STYLES = {
     "long 3B": {"length": 20, "lift": 0.4, "gravity_bend": 2.6, "points": 96, "more": CURL.format(1.5, 8)},
     "down": {"length": 17, "lift": 0.3, "gravity_bend": 2.2, "points": 72, "more": CURL.format(0.8, 6)},
     "lying": {"length": 9, "lift": 0.02, "gravity_bend": 3, "points": 72, "more": CURL.format(0.15, 6)},
-    "bun": {"length": 20, "lift": 0.3, "gravity_bend": 1.0, "points": 72, "more": BUN + CURL.format(0.3, 6)},
+    "bun": {"length": 20, "lift": 0.3, "gravity_bend": 1.0, "points": 72, "more": BUN + PITCH},
 }
 
 SHOT = """
@@ -125,6 +126,7 @@ class Style:
         height = -DROP * fraction**2 * (3 - 2 * fraction)
         motion, tips = self.motion(shot, rest, self.head(height, BOUNCE_FPS)), self.groom.locks.offsets[1:] - 1
         motion.strands.place(begin)
+        motion.scene.place()
         up = []
         for k in range(1, len(height)):
             motion.advance(k, k + 1)

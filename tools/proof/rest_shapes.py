@@ -1,7 +1,7 @@
-"""Compares hairstyles in contact with the rest shapes none, lofted and equilibrium. A style takes over a minute.
+"""Compares a hairstyle in contact with the rest shapes none, lofted and equilibrium. Prints JSON after some minutes.
 
-python tools/proof/rest_shapes.py [STYLE …] [--locks 100] [--pictures FOLDER] [--head FILE --region NAME]
-python tools/proof/rest_shapes.py [STYLE …] --locks 30 --springs 0.1 0.5 0.72
+python tools/proof/rest_shapes.py STYLE [--locks 100] [--pictures FOLDER] [--head FILE --region NAME]
+python tools/proof/rest_shapes.py STYLE --locks 30 --springs 0.1 0.5 0.72
 
 1. Drift: the head stands still for 10 s with equilibrium and for 3 s with the other rest shapes.
 2. Bounce: the head drops by 5 cm in 0.1 s. The dominant frequency and the amplitude of each tip are divided by those
@@ -14,8 +14,10 @@ With ``--springs`` only the bounce is measured, in equilibrium with each of thes
 from __future__ import annotations
 
 import argparse
+import json
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from hairstyles import FPS, HEAD, MODES, SAG_TIME, STYLES, Array, Style, make_style
@@ -26,10 +28,13 @@ import ringlet
 from ringlet.rest import solve_rest_shape
 
 
-def table(name: str, style: Style, seconds: float, picture: Path | None) -> None:
-    """Prints the rows of a style, one for each rest mode."""
+def compared(name: str, style: Style, seconds: float, picture: Path | None) -> dict[str, Any]:
+    """What each rest mode does to a style: ``modes``, and ``swing`` in equilibrium relative to the shapes without it.
+
+    A mode has the drift, the distance of the rest shape from the groom, and both of vertices that touch the head.
+    """
     groomed, ends, swings = np.asarray(style.groom.locks.points, np.float64), {}, {}
-    on_head, weightless = style.on_head(), {}
+    on_head, weightless, modes = style.on_head(), {}, {}
     for mode in MODES:
         shot, began = style.shot(mode), time.process_time()
         made = None if mode == "none" else solve_rest_shape(shot, style.groom, obstacles=[style.head(np.zeros(1), FPS)])
@@ -40,39 +45,36 @@ def table(name: str, style: Style, seconds: float, picture: Path | None) -> None
         drift = np.linalg.norm(ends[mode] - groomed, axis=1)
         if mode != "lofted":
             swings[mode] = style.bounce(shot, rest, ends[mode])
-        if rest is not None and on_head.any():
-            weightless[f"{mode}, weightless"] = style.weightless(mode, rest)
-            offset = 1e3 * np.linalg.norm(rest.points - groomed, axis=1)[on_head].mean()
-            print(
-                f"{name}, {mode}: {on_head.mean():.2%} touch the head, rest shape {offset:.3g} mm from groom",
-                flush=True,
-            )
-        stiffened = 0 if made is None or made.stiffened is None else int((made.stiffened > 1).sum())
-        away = 0.0 if rest is None else np.linalg.norm(rest.points - groomed, axis=1).mean()
-        columns = [1e3 * drift.mean(), *(1e6 * np.percentile(drift, [99, 100])), 1e3 * away, took]
-        print(f"| {name} | {mode} |", *(f"{value:.3g} |" for value in columns), f"{stiffened} |", flush=True)
+        found = {"mean_mm": 1e3 * drift.mean()}
+        found |= {f"{part}_um": 1e6 * np.percentile(drift, part) for part in (99, 100)}
+        if rest is not None:
+            away = 1e3 * np.linalg.norm(rest.points - groomed, axis=1)
+            found |= {"rest_mm": away.mean(), "cpu_s": took}
+            if made.stiffened is not None:
+                found["stiffened"] = int((made.stiffened > 1).sum())
+            if on_head.any():
+                weightless[f"{mode}, weightless"] = end = style.weightless(mode, rest)
+                rise = 1e3 * np.linalg.norm(end - groomed, axis=1)[on_head].mean()
+                found["on_head"] = {"rest_mm": away[on_head].mean(), "rise_mm": rise}
+        modes[mode] = found
     swings["weightless"] = style.bounce(style.shot("none", 0.0), None, groomed)
+    swing = {}
     for plain in ("none", "weightless"):
         ratios = (mine / theirs for mine, theirs in zip(swings["equilibrium"], swings[plain], strict=True))
-        frequency, amplitude = (float(np.median(ratio)) for ratio in ratios)
-        print(
-            f"{name}, bounce relative to {plain}: frequency x {frequency:.2f}, amplitude x {amplitude:.2f}", flush=True
-        )
-    for mode, points in weightless.items():
-        rise = 1e3 * np.linalg.norm(points - groomed, axis=1)[on_head].mean()
-        print(f"{name}, {mode}: vertices on the head move by {rise:.3g} mm", flush=True)
+        swing[plain] = dict(zip(("frequency", "amplitude"), (float(np.median(ratio)) for ratio in ratios), strict=True))
     if picture is not None:
         draw(name, style.groom, {"groomed": groomed, **ends}, picture)
         if weightless:
             draw(f"{name} weightless", style.groom, {"groomed": groomed, **weightless}, picture)
+    return {"touching": on_head.mean(), "modes": modes, "swing": swing}
 
 
-def springs(name: str, style: Style, values: list[float], seconds: float) -> None:
-    """Prints the bounce of tips in equilibrium, relative to the groomed shape without gravity, for each `spring`.
+def springs(style: Style, values: list[float], seconds: float) -> dict[str, Any]:
+    """The bounce of tips in equilibrium, relative to the groomed shape without gravity, for each `spring`.
 
-    A cell holds the 10th, 50th and 90th percentile of the frequency, the median amplitude and the mean stiffening.
+    ``frequency`` has the 10th, 50th and 90th percentile, ``amplitude`` is the median, ``stiffening`` the mean.
     """
-    groomed, cells = np.asarray(style.groom.locks.points, np.float64), []
+    groomed, found = np.asarray(style.groom.locks.points, np.float64), {}
     plain_frequency, plain_amplitude = style.bounce(style.shot("none", 0.0), None, groomed)
     for spring in values:
         shot = style.shot("equilibrium", spring=spring)
@@ -80,9 +82,12 @@ def springs(name: str, style: Style, values: list[float], seconds: float) -> Non
         rest = to_curves(made, shot)
         *_, begin = style.at_rest(shot, rest, seconds)
         frequency, amplitude = style.bounce(shot, rest, begin.copy())
-        frequencies = ", ".join(f"{ratio:.2f}" for ratio in np.percentile(frequency / plain_frequency, [10, 50, 90]))
-        cells.append(f"{frequencies}; {np.median(amplitude / plain_amplitude):.2f}; {made.stiffened.mean():.3g}")
-    print(f"| {name} |", *(f"{cell} |" for cell in cells), flush=True)
+        found[f"{spring:g}"] = {
+            "frequency": {f"{part}": np.percentile(frequency / plain_frequency, part) for part in (10, 50, 90)},
+            "amplitude": np.median(amplitude / plain_amplitude),
+            "stiffening": made.stiffened.mean(),
+        }
+    return {"springs": found}
 
 
 def draw(name: str, groom: Groom, shapes: dict[str, Array], folder: Path) -> None:
@@ -99,27 +104,22 @@ def draw(name: str, groom: Groom, shapes: dict[str, Array], folder: Path) -> Non
 
 
 def main() -> None:
-    """Prints a row for each rest mode of each style, or a row for each style with ``--springs``."""
+    """Prints the comparison of a style, or its springs with ``--springs``."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("styles", nargs="*", default=list(STYLES), help=", ".join(STYLES))
-    parser.add_argument("--locks", type=int, default=100, help="number of locks of a style")
+    parser.add_argument("style", choices=STYLES)
+    parser.add_argument("--locks", type=int, default=100, help="number of locks")
     parser.add_argument("--seconds", type=float, default=10.0, help="duration of the drift")
     parser.add_argument("--pictures", type=Path, help="folder for a picture of each style")
     parser.add_argument("--head", type=Path, default=HEAD, help="mesh of the head")
     parser.add_argument("--region", default="scalp", help="region of the head with hair")
     parser.add_argument("--springs", type=float, nargs="+", metavar="SPRING", help="values of rest.spring")
     options = parser.parse_args()
+    style = make_style(options.style, options.locks, options.head, options.region)
     if options.springs:
-        print("| style |", *(f"spring = {spring} |" for spring in options.springs))
+        found = springs(style, options.springs, options.seconds)
     else:
-        columns = "drift, mean [mm] | 99 % [µm] | largest [µm] | rest from groom, mean [mm] | CPU [s] | stiffer"
-        print(f"| style | rest | {columns} |")
-    for name in options.styles or STYLES:
-        style = make_style(name, options.locks, options.head, options.region)
-        if options.springs:
-            springs(name, style, options.springs, options.seconds)
-        else:
-            table(name, style, options.seconds, options.pictures)
+        found = compared(options.style, style, options.seconds, options.pictures)
+    print(json.dumps({"style": options.style, "locks": options.locks, "seconds": options.seconds, **found}, indent=1))
 
 
 if __name__ == "__main__":
