@@ -31,6 +31,10 @@ from .api.grooms import write_groom as write_groom
 from .api.hairs import build_hairs as build_hairs
 from .api.hairs import measure_hairs as measure_hairs
 from .api.hairs import write_hairs as write_hairs
+from .api.motion import motion_json as motion_json
+from .api.motion import motion_table as motion_table
+from .api.motion import motion_words as motion_words
+from .api.motion import plot_motion as plot_motion
 from .api.movies import write_movie as write_movie
 from .api.movies import write_turntable as write_turntable
 from .api.pictures import write_loft_picture as write_loft_picture

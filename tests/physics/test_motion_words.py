@@ -1,12 +1,15 @@
 """Bounce, settle and swing of hanging locks: the theory against the exact Hessian, and from words to material."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from locks import STRAIGHT
 from ringlet.data.curves import Curves
-from ringlet.motion import HangingLocks, Stepping, advised_steps
+from ringlet.motion import CoilLengths, HangingLocks, Stepping, advised_steps, seen_motion
 from ringlet.motion.modes import modes_of
 from ringlet.shot.material import Material
+from ringlet.shot.solver import Solver
 from ringlet.sim.strands import Strands
 from ringlet.validate.bounce import lock
 from scipy.linalg import eigh
@@ -131,3 +134,32 @@ def test_a_lock_that_falls_over_has_no_words():
     up = Curves.from_list([STRAIGHT[:, [1, 0, 2]]])
     strands = Strands(up, Material(bend_scale=0.01), 3)
     assert np.isnan(modes_of(strands, strands.positions.copy(), WEIGHT).swing().elastic).all()
+
+
+def test_the_length_of_a_coil_is_its_rise():
+    turn = 2 * np.pi * np.arange(97) / 12
+    coil = Curves.from_list([np.c_[5e-3 * np.cos(turn), -6e-3 * turn / (2 * np.pi), 5e-3 * np.sin(turn)]])
+    lengths, pulled = CoilLengths(coil), coil.points * [0.9, 1.2, 0.9]
+    assert lengths.of(pulled) / lengths.of(coil.points) == pytest.approx(1.2, rel=1e-6)
+    bent = np.linspace(0, 1, 97)[:, None] ** 2 * [0.02, 0.0, 0.0]  # its tip goes sideways
+    assert lengths.of(coil.points + bent) / lengths.of(coil.points) == pytest.approx(1.0, abs=0.15)
+
+
+@pytest.mark.parametrize("kind", ["3A", "3B"])
+def test_a_hop_shows_the_bounce_of_the_words(kind):
+    """The root hops by 30 mm in a clip of two seconds; the lock opens by half of its length."""
+    strands, hanging = hung(kind, damping=3e-3)
+    groomed, frames = strands.curves, [strands.positions.copy()]
+    heights = 0.03 * np.sin(np.pi * np.clip(np.arange(49) / 24 - 0.2, 0, 0.4) / 0.4) ** 2
+    for begin, end in pairwise(heights):
+        for part in (0.25, 0.5, 0.75, 1.0):
+            up = np.array([0.0, begin + (end - begin) * part, 0.0])
+            solver = Solver(newton=20, integrator="bdf2")
+            strands.step(groomed.points + up, FILM.dt, gravity=WEIGHT, solver=solver)
+        frames.append(strands.positions.copy())
+    seen, words = seen_motion(groomed, iter(frames), WEIGHT, 24.0), hanging.words(FILM)
+    assert seen.bounce[0] == pytest.approx(words.bounce[0], rel=0.06)
+    assert 0.6 * words.settle[0] < seen.settle[0] < 1.1 * words.settle[0]
+    assert seen.opens[0] > words.sag[0] + 0.15 > seen.closes[0] + 0.15
+    few = seen_motion(groomed, iter(frames[:8]), WEIGHT, 24.0)
+    assert np.isnan(few.bounce).all() and few.opens[0] > words.sag[0]

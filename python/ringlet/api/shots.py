@@ -53,9 +53,9 @@ def simulate(
     """
     if not isinstance(shot, shots.Shot):
         shot = read_shot(shot)
-    groom = _rounded(groom or shot.groom, progress)
+    groom = as_simulated(groom or shot.groom, progress)
     with recorded() as read:
-        contents = _contents(shot, groom, allow_stale, frames)
+        contents = contents_of(shot, groom, allow_stale, frames)
     inputs = sim.run_inputs(shot, groom, read, frames) if checkpoints else {}
     cache = sim.simulate(
         shot,
@@ -98,9 +98,9 @@ def write_simulation(
     on_warning:  called before the first frame with each sentence about settings or motion that make frames take long
     """
     io.check_target(path, under)
-    groom = _rounded(groom)
+    groom = as_simulated(groom)
     with recorded() as read:
-        contents = _contents(shot, groom, allow_stale, frames)
+        contents = contents_of(shot, groom, allow_stale, frames)
         check_place(path)
     inputs = sim.run_inputs(shot, groom, read, frames)
     kept, made_from = _checkpoints(checkpoints, groom, inputs), digest(inputs, frames or shot.frames)
@@ -175,9 +175,9 @@ def run_inputs(shot: Shot, groom: Groom, *, frames: tuple[int, int] | None = Non
 
     These are the settings, the groom, and the files that are read, by their contents.
     """
-    groom = _rounded(groom)
+    groom = as_simulated(groom)
     with recorded() as read:
-        _contents(shot, groom, False, frames)
+        contents_of(shot, groom, False, frames)
     return sim.run_inputs(shot, groom, read, frames)
 
 
@@ -198,8 +198,8 @@ def start_motion(
 
     on_warning: as for ``write_simulation``
     """
-    groom = _rounded(groom)
-    contents = _contents(shot, groom, allow_stale)
+    groom = as_simulated(groom)
+    contents = contents_of(shot, groom, allow_stale)
     _warn_of_work(shot, groom, contents, shot.frames, on_warning)
     return sim.Motion(shot, groom, first=shot.frames[0], **contents)
 
@@ -216,7 +216,7 @@ def _warn_of_work(
             on_warning(sentence)
 
 
-def _rounded(groom: Groom | Path | str, progress: Progress | None = None) -> Groom:
+def as_simulated(groom: Groom | Path | str, progress: Progress | None = None) -> Groom:
     """The groom of a shot, rounded as in its file, also where it comes from a recipe.
 
     Steps end before they converge to the last digit, and differences there grow.
@@ -224,7 +224,7 @@ def _rounded(groom: Groom | Path | str, progress: Progress | None = None) -> Gro
     return io.as_written(groom if isinstance(groom, Groom) else load_groom(groom, progress=progress))
 
 
-def _contents(shot: Shot, groom: Groom, allow_stale: bool, frames: tuple[int, int] | None = None) -> dict[str, Any]:
+def contents_of(shot: Shot, groom: Groom, allow_stale: bool, frames: tuple[int, int] | None = None) -> dict[str, Any]:
     """The contents of the files that a shot and its groom name: the further arguments of ``sim.simulate``.
 
     frames: in place of the shot's
@@ -258,7 +258,7 @@ def loft(
     """
     if not isinstance(shot, shots.Shot):
         shot = read_shot(shot)
-    groom = _rounded(groom or shot.groom, progress)
+    groom = as_simulated(groom or shot.groom, progress)
     obstacles = _supporting_bodies(shot, groom)
     if known is None or not Path(known).exists():
         made = rest.solve_rest_shape(shot, groom, obstacles=obstacles, progress=progress)

@@ -27,6 +27,7 @@ COMMANDS = [
     "edit",
     "check",
     "loft",
+    "motion",
     "sim",
     "converge",
     "wedge",

@@ -271,7 +271,7 @@ def _numbers_of_motion(folder: Path, groom: Groom, cache: Path, frame: int) -> d
                 with replacing(folder / PLACES) as aside, aside.open("wb") as file:
                     np.save(file, points)
     return {
-        "bounce, mm": float(1e3 * np.ptp(extents, axis=0).mean()),
+        "change of root to tip, mm": float(1e3 * np.ptp(extents, axis=0).mean()),
         "root to tip, mm": float(1e3 * extents[-1].mean()),
     }
 

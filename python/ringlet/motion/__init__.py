@@ -1,6 +1,16 @@
 """Motion in the words of those who judge it: bounce, settle, sag and swing of hanging locks."""
 
+from ringlet.motion.coils import CoilLengths, SeenMotion, seen_motion
 from ringlet.motion.stepping import Integrator, Stepping, advised_steps
 from ringlet.motion.words import HangingLocks, Words
 
-__all__ = ["HangingLocks", "Integrator", "Stepping", "Words", "advised_steps"]
+__all__ = [
+    "CoilLengths",
+    "HangingLocks",
+    "Integrator",
+    "SeenMotion",
+    "Stepping",
+    "Words",
+    "advised_steps",
+    "seen_motion",
+]

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ringlet.motion.coils import CoilLengths
 from ringlet.motion.modes import Mode, Modes, modes_of
 from ringlet.motion.stepping import Stepping, damped_exponent, shown_by_itself
 from ringlet.sim.strands import Strands
@@ -26,7 +27,7 @@ class Words:
 
     bounce: frequency along the lock, from root to tip [Hz]; 0 where it does not ring
     settle: time until a bounce has gone to a twentieth [s]
-    sag:    how much longer the lock hangs than it is groomed, as a fraction
+    sag:    how much longer the lock hangs along its coil than it is groomed, as a fraction
     swing:  frequency of the whole lock sideways [Hz]
     """
 
@@ -56,9 +57,9 @@ class HangingLocks:
         gravity: [m/s²]
         """
         strands.settle(gravity=gravity, tolerance=STILL, steps=STEPS)
-        points, ends = strands.positions.copy(), strands.curves.offsets
-        hanging, before = (np.linalg.norm(of[ends[1:] - 1] - of[ends[:-1]], axis=1) for of in (points, groomed))
-        return cls(hanging / before - 1.0, modes_of(strands, points, gravity), strands.material.mass_damping)
+        points, coils = strands.positions.copy(), CoilLengths(strands.curves.with_points(groomed))
+        modes = modes_of(strands, points, gravity)
+        return cls(coils.of(points) / coils.of(groomed) - 1.0, modes, strands.material.mass_damping)
 
     def words(self, steps: Stepping | None = None) -> Words:
         """What the steps of a shot show of the locks; None: what the locks do themselves."""

@@ -78,7 +78,7 @@ class Motion:
         garments: Sequence[Garment],
         first: int,
     ) -> None:
-        _check(shot, groom.locks)
+        check_locks(shot, groom.locks)
         self.cores, rest_of_all = Cores.of(groom), rest
         groom, rest = self.cores.groom, rest and self.cores.reduced(rest)
         self.shot, self.clip, self.locks, self.first = shot, clip, groom.locks, first
@@ -249,7 +249,7 @@ class Motion:
         return lagging(self.scene, parts)
 
 
-def _check(shot: Shot, locks: Curves) -> None:
+def check_locks(shot: Shot, locks: Curves) -> None:
     """Refuses locks with no vertex that is free to move."""
     locks.check("sim: locks").check_strands("sim: locks")
     if (locks.counts <= shot.held).any():

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from ringlet.data.curves import Curves
 from ringlet.data.mesh import Mesh
 from ringlet.groom import PRESETS, make_groom, parse_recipe
-from ringlet.motion import HangingLocks, Integrator, Stepping
+from ringlet.motion import CoilLengths, HangingLocks, Integrator, Stepping
 from ringlet.shot.material import Material
 from ringlet.shot.solver import Solver
 from ringlet.sim.strands import Strands
@@ -114,8 +114,8 @@ class Plucked:
         self.strands.place(self.groomed)
         for _ in range(120):
             self.strands.step(self.groomed, 1.0 / 24.0, gravity=(0.0, -GRAVITY, 0.0))
-        hangs, before = (np.linalg.norm(points[-1] - points[0]) for points in (self.strands.positions, self.groomed))
-        return float(hangs / before - 1.0)
+        coils = CoilLengths(self.strands.curves)
+        return float(coils.of(self.strands.positions)[0] / coils.of(self.groomed)[0] - 1.0)
 
 
 def vibrations(series: Array, most: int = 14) -> tuple[NDArray[np.complex128], Array]:

@@ -1,0 +1,106 @@
+"""``ringlet motion``: the words of a shot's locks, before it is simulated and after."""
+
+import json
+
+import numpy as np
+import pytest
+from commands import edit, refused, run
+from small_example import write_example
+
+import ringlet
+
+
+@pytest.fixture(scope="module")
+def example(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("motion")
+    write_example(folder)
+    return folder
+
+
+def word(motion, name, group="locks"):
+    """The word of a group."""
+    return next(word for word in motion.words if (word.group, word.name) == (group, name))
+
+
+def test_the_words_of_a_shot_need_no_simulation(example):
+    motion = ringlet.motion_words(example / "small.shot.toml")
+    assert [word.name for word in motion.words] == ["bounce", "settle", "sag", "swing"]
+    for each in motion.words:
+        assert each.shown.shape == (8,) and np.isfinite(each.shown).all() and not each.found.size
+    assert (word(motion, "bounce").by_itself > word(motion, "bounce").shown).all()
+
+
+def test_a_stiffer_lock_bounces_faster_and_sags_less(example):
+    shot = ringlet.read_shot(example / "small.shot.toml")
+    stiff = shot.model_copy(update={"strands": shot.strands.model_copy(update={"bend_scale": 4.0})})
+    soft, hard = (ringlet.motion_words(each) for each in (shot, stiff))
+    ratio = word(hard, "bounce").by_itself / word(soft, "bounce").by_itself
+    assert np.median(ratio) == pytest.approx(2.0, rel=0.25)  # weight is a part of the stiffness
+    assert np.abs(word(hard, "sag").shown).max() < np.abs(word(soft, "sag").shown).max()
+
+
+def test_the_steps_that_keep_a_bounce_are_advised_and_do(example):
+    shot = ringlet.read_shot(example / "small.shot.toml")
+    said = " ".join(ringlet.motion_words(shot).notes)
+    assert "The steps end the bounce" in said and 'solver.integrator = "bdf2" and solver.substeps = ' in said
+    substeps = int(said.split('"bdf2" and solver.substeps = ')[1].split(".")[0])
+    solver = shot.solver.model_copy(update={"integrator": "bdf2", "substeps": substeps})
+    assert not ringlet.motion_words(shot.model_copy(update={"solver": solver})).notes
+
+
+def test_a_cache_shows_how_far_coils_open(example):
+    cache = example / "cache.usdc"
+    assert run("sim", example / "small.shot.toml", "-o", cache).exit_code == 0
+    result = run("motion", example / "small.shot.toml", cache)
+    assert result.exit_code == 0, result.output
+    header, *rows = result.stdout.splitlines()
+    assert "found, median" in header
+    assert [" ".join(row.split()[1:3]) for row in rows[:6]] == [
+        "bounce [Hz]", "settle [s]", "sag [%]", "swing [Hz]", "opens [%]", "closes [%]"
+    ]  # fmt: skip
+    motion = ringlet.motion_words(example / "small.shot.toml", cache=cache)
+    assert np.isnan(word(motion, "bounce").found).all()  # four frames show no vibration
+    assert (word(motion, "opens").found >= word(motion, "closes").found).all()
+
+
+def test_a_cache_of_other_locks_is_refused(example):
+    cache = example / "other.usdc"
+    assert run("sim", example / "small.shot.toml", "-o", cache, "--frames", "1:2").exit_code == 0
+    recipe = edit(example / "small.recipe.toml", "count = 8", "count = 7")
+    refused(run("motion", example / "small.shot.toml", cache), "other.usdc", "not those of the groom", "simulate")
+    edit(recipe, "count = 7", "count = 8")
+
+
+def test_locks_that_are_all_held_are_refused(example):
+    shot = example / "held.shot.toml"
+    shot.write_text((example / "small.shot.toml").read_text() + "held = 40\n")
+    refused(run("motion", shot), "held is 40, but a lock has 40 points")
+
+
+def test_plot_and_json(example):
+    plot = example / "motion.png"
+    result = run("motion", example / "small.shot.toml", "--plot", plot, "--json")
+    assert result.exit_code == 0, result.output
+    found = json.loads(result.stdout)
+    assert [each["word"] for each in found["words"]] == ["bounce", "settle", "sag", "swing"]
+    low, median, high = found["words"][0]["shown"]
+    assert low <= median <= high and found["words"][0]["found"] is None
+    assert plot.read_bytes().startswith(b"\x89PNG")
+    refused(run("motion", example / "small.shot.toml", "--plot", example / "motion.txt"), "must end in .png, .svg")
+
+
+def test_grooms_of_a_head_are_groups(example):
+    groom = ringlet.load_groom(example / "small.recipe.toml")
+    groom.locks.curve["groom"] = np.array([0, 0, 0, 0, 0, 1, 1, 1], np.int32)
+    groom.grooms = {"hair": {"region": None}, "fringe": {"region": None}}
+    motion = ringlet.motion_words(ringlet.read_shot(example / "small.shot.toml"), groom)
+    counts = [len(word(motion, "bounce", group).shown) for group in ("hair", "fringe")]
+    assert counts == [5, 3]
+
+
+def test_braids_that_are_one_rod_have_the_words_of_the_rod(example):
+    groom = ringlet.load_groom(example / "small.recipe.toml")
+    groom.locks.curve["core"] = np.array([1, 1, 1, 0, 0, 0, 0, 0], np.int32)
+    groom.locks.curve["section"] = np.array([0, 0, 0, -1, -1, -1, -1, -1], np.int32)
+    motion = ringlet.motion_words(ringlet.read_shot(example / "small.shot.toml"), groom)
+    assert word(motion, "bounce").shown.shape == (6,)
