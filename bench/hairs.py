@@ -14,11 +14,11 @@ import ringlet
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "child"
 OPTIONS: dict[str, dict[str, Any]] = {
-    "with points": {},
-    "--on-demand": {"on_demand": True},
-    "--points 64": {"points": 64},
-    "--points 48": {"points": 48},
-    "--lod": {"lod": True},
+    "all points": {},
+    "on demand": {"on_demand": True},
+    "64 points": {"points": 64},
+    "48 points": {"points": 48},
+    "levels of detail": {"lod": True},
 }
 PLACES = 480  # of a hair that are compared
 

@@ -44,7 +44,7 @@ class Measured(SphinxDirective):
 class Recorded(SphinxDirective):
     """Any values of runs: the columns, what they hold as a path with a format, and a run for each row.
 
-    The commands and the core that they ran stand below.
+    The commands and the core that they ran stand below the first table of a page that they are in.
 
     ```{recorded}
     coils | kept
@@ -74,8 +74,11 @@ class Recorded(SphinxDirective):
         if empty := [path for path, *cells in zip(columns, *rows, strict=False) if {*cells} == {NOTHING}]:
             raise self.error(f"recorded: no run holds {', '.join(empty)}")
         lines = [f"| {names} |", "|---" * len(columns) + "|", *(f"| {' | '.join(row)} |" for row in rows)]
+        listed = self.env.temp_data.setdefault("recorded", set[str]())  # of the page
         for core, ran in commands.items():
-            lines += ["", f"Of {core}:", "", "```sh", *ran, "```"]
+            if new := [command for command in ran if command not in listed]:
+                lines += ["", f"Of {core}:", "", "```sh", *new, "```"]
+            listed.update(ran)
         within = Element()
         self.state.nested_parse(StringList(lines), 0, within)
         return within.children
