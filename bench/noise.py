@@ -13,7 +13,7 @@ from PIL import Image
 import ringlet
 
 
-def run(samples: str = "12,24,40", reference: int = 512, size: int = 200, engine: str = "scalar") -> dict[str, Any]:
+def run(samples: str = "12,24,40", reference: int = 512, size: int = 200) -> dict[str, Any]:
     """Takes a lock of the example from near, with and without the denoiser.
 
     samples:   light paths per pixel, separated by commas
@@ -33,7 +33,6 @@ def run(samples: str = "12,24,40", reference: int = 512, size: int = 200, engine
             "height": size,
             "look_at": int(groom.locks.ids[len(groom.locks) // 2]),
             "distance": 0.5,
-            "engine": engine,
         }
 
         def picture(samples: int, denoiser: str) -> np.ndarray:
@@ -50,4 +49,4 @@ def run(samples: str = "12,24,40", reference: int = 512, size: int = 200, engine
                 name: float(np.sqrt(((image - truth) ** 2).mean()))
                 for name, image in (("noisy", noisy), ("denoised", denoised))
             }
-    return {"params": {"reference": reference, "size": size, "engine": engine}, "errors": errors}
+    return {"params": {"reference": reference, "size": size}, "errors": errors}
