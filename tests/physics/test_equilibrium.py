@@ -14,8 +14,8 @@ from ringlet.shot import Material
 from ringlet.shot.solver import Solver
 from ringlet.sim import Obstacle
 from ringlet.sim.hair_pins import spring_forces
-from ringlet.sim.motion import make_strands
 from ringlet.sim.scene import Scene
+from ringlet.sim.shot_strands import make_strands
 from ringlet.sim.strands import Strands
 
 from ringlet.rest import equilibrium, loft, with_sag

@@ -6,7 +6,7 @@ from coils import helix
 from locks import GRAVITY, STRAIGHT, arc, curl, first_frequency, sag, scene
 from ringlet.data.curves import Curves
 from ringlet.rest.rod_strains import measure_strains, shape_of_strains
-from ringlet.sim.motion import make_strands
+from ringlet.sim.shot_strands import make_strands
 
 from ringlet.rest import loft
 

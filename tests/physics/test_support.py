@@ -14,10 +14,10 @@ from ringlet.rest.nonnegative_qp import solve_nonnegative_qp
 from ringlet.rest.rod_strains import edges
 from ringlet.shot.solver import Solver
 from ringlet.sim import Obstacle
-from ringlet.sim.motion import make_strands
 from ringlet.sim.obstacle import Body
 from ringlet.sim.resting_contacts import initial_contact_forces
 from ringlet.sim.scene import Scene
+from ringlet.sim.shot_strands import make_strands
 from scipy.optimize import nnls
 from scipy.sparse import block_diag
 

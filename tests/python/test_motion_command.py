@@ -104,3 +104,31 @@ def test_braids_that_are_one_rod_have_the_words_of_the_rod(example):
     groom.locks.curve["section"] = np.array([0, 0, 0, -1, -1, -1, -1, -1], np.int32)
     motion = ringlet.motion_words(ringlet.read_shot(example / "small.shot.toml"), groom)
     assert word(motion, "bounce").shown.shape == (6,)
+
+
+def asked(example, words, steps="integrator = 'bdf2'\nsubsteps = 3"):
+    """The small shot with words."""
+    text = (example / "small.shot.toml").read_text()
+    file = example / "asked.shot.toml"
+    file.write_text(f"{text}[solver]\n{steps}\n[motion]\n{words}\n")
+    return file
+
+
+def test_what_is_asked_stands_beside_what_is_shown(example):
+    shot = asked(example, "bounce = 6\nsettle = { value = 0.3, vary = 0.2 }")
+    motion = ringlet.motion_words(shot)
+    for name in ("bounce", "settle"):
+        assert word(motion, name).shown == pytest.approx(word(motion, name).asked, rel=0.05)
+    assert np.ptp(word(motion, "settle").asked) > 0.02 and not any("is asked" in note for note in motion.notes)
+    header, bounce, *_ = run("motion", shot).stdout.splitlines()
+    assert header.split()[:3] == ["group", "word", "asked"] and bounce.split()[:4] == ["locks", "bounce", "[Hz]", "6"]
+
+
+def test_words_that_locks_do_not_show_are_counted(example):
+    notes = ringlet.motion_words(asked(example, "settle = 30")).notes
+    assert any("8 of 8 locks do not show the settle that is asked" in note for note in notes)
+
+
+def test_a_simulation_has_the_motion_that_words_ask_for(example):
+    plain, moved = (ringlet.simulate(asked(example, words)).points[-1] for words in ("", "bounce = 6"))
+    assert np.abs(plain - moved).max() > 1e-5

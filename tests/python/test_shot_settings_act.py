@@ -43,6 +43,7 @@ PINNED = CLOTH + "[[cloth.pin]]\nsubset = 'front'\n"
 TABLES = {
     "Shot": ("", ""),
     "Material": ("strands", ""),
+    "WantedMotion": ("motion", ""),
     "Variation": ("variation", ""),
     "Rest": ("rest", ""),
     "Solver": ("solver", ""),
@@ -55,6 +56,7 @@ TABLES = {
     "Pin": ("cloth.0.pin.0", PINNED),
 }
 BESIDE = {
+    "WantedMotion.seed": "[solver]\nsubsteps = 8\n[motion]\nsettle = { value = 0.2, vary = 0.5 }\n",
     "Variation.seed": "[variation]\nbend = { vary = 0.5 }\n",
     "Material.limit_twist": "[variation]\ntwist = 2\n",
     "Rest.gain": "[rest]\nmode = 'lofted'\n",

@@ -9,7 +9,7 @@ from ringlet.data.groom import Groom
 from ringlet.data.mesh import Clip, Mesh
 from ringlet.shot import parse_shot
 from ringlet.sim import simulate
-from ringlet.sim.motion import make_strands
+from ringlet.sim.shot_strands import make_strands
 from ringlet.sim.variation import material_factors
 from small_example import write_example, write_head
 

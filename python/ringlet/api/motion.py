@@ -11,9 +11,9 @@ from ringlet.api.progress import Progress
 from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
 from ringlet.data.motion import MotionWords
-from ringlet.motion.shots import words_of_shot
 from ringlet.report.motion import columns, plain, rows, write_plot
 from ringlet.shot.shot import Shot
+from ringlet.sim.motion_words import words_of_shot
 
 
 def motion_words(

@@ -16,6 +16,7 @@ class Word:
     """A word of a group of locks; arrays have one value a lock, NaN where a lock has none, or are empty.
 
     unit:      Hz, s, or empty for a fraction
+    asked:     by the shot
     shown:     at the steps of the shot
     by_itself: without the steps' own damping
     found:     in a simulation
@@ -24,6 +25,7 @@ class Word:
     group: str
     name: str
     unit: str
+    asked: Array = field(default_factory=NONE.copy)
     shown: Array = field(default_factory=NONE.copy)
     by_itself: Array = field(default_factory=NONE.copy)
     found: Array = field(default_factory=NONE.copy)

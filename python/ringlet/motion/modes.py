@@ -14,18 +14,35 @@ docs/theory/hanging_coil.md derives it.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from ringlet.sim.strands import Strands
+from ringlet.data.curves import Curves
 
 Array = NDArray[np.float64]
 
 ORDERS = 4  # polynomials of each kind of load
 AT_ONCE = 1 << 15  # vertices whose motions are in memory at once
 STANDS = 1e-9  # least stiffness of a lock that stays in place, relative to its largest
+
+
+class Strands(Protocol):
+    """Strands as ``ringlet.sim.strands`` has them: arrays of vertices, shapes (n,), in SI units."""
+
+    curves: Curves
+    held: int | NDArray[np.bool_]
+
+    @property
+    def masses(self) -> Array: ...
+    @property
+    def drag(self) -> Array: ...
+    @property
+    def damping(self) -> Array: ...
+    @property
+    def stiffness(self) -> tuple[Array, Array, Array]: ...
 
 
 @dataclass

@@ -6,16 +6,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from ringlet.motion.coils import CoilLengths
-from ringlet.motion.modes import Mode, Modes, modes_of
+from ringlet.motion.modes import Mode, Modes
 from ringlet.motion.stepping import Stepping, damped_exponent, shown_by_itself
-from ringlet.sim.strands import Strands
 
 Array = NDArray[np.float64]
+Wanted = Array | float | None
 
-STILL, STEPS = 1e-7, 40  # motion in a step of 1 s below which locks hang still [m], and the most steps
 SOFTEST, STIFFEST = 1e-4, 1e6  # factors on the stiffness between which words are sought
 HALVINGS = 40
 MET = 0.05  # deviation from a word that counts as met, relative to it
@@ -49,49 +47,66 @@ class HangingLocks:
     modes: Modes
     mass_damping: float
 
-    @classmethod
-    def of(cls, strands: Strands, groomed: NDArray[np.floating], gravity: tuple[float, float, float]) -> HangingLocks:
-        """Lets strands hang from where they are until they are still.
-
-        groomed: the groom [m], shape (n, 3)
-        gravity: [m/s²]
-        """
-        strands.settle(gravity=gravity, tolerance=STILL, steps=STEPS)
-        points, coils = strands.positions.copy(), CoilLengths(strands.curves.with_points(groomed))
-        modes = modes_of(strands, points, gravity)
-        return cls(coils.of(points) / coils.of(groomed) - 1.0, modes, strands.material.mass_damping)
-
     def words(self, steps: Stepping | None = None) -> Words:
         """What the steps of a shot show of the locks; None: what the locks do themselves."""
         bounce, swing = (self._exponent(mode) for mode in (self.modes.bounce(), self.modes.swing()))
         shown = steps.shown if steps else shown_by_itself
         return Words(*shown(bounce), self.sag, shown(swing)[0])
 
-    def material(self, steps: Stepping, bounce: ArrayLike, settle: ArrayLike | None = None) -> tuple[Array, Array]:
-        """How many times stiffer against bend and twist each lock is with which the steps show a bounce [Hz], and its
-        damping time [s]; shapes (count,), NaN where there is none.
+    def material(self, steps: Stepping, bounce: Wanted, settle: Wanted = None) -> tuple[Array, Array]:
+        """Factors on the stiffness against bend and twist, and on the damping, with which the steps of a shot show a
+        bounce [Hz] and a time to settle [s]; shapes (count,), NaN where none do.
 
-        settle: time until a bounce has gone to a twentieth [s]; None keeps the damping time, which is NaN then
-
+        A word that is None leaves its factor at 1. Where steps and air alone settle a bounce sooner, the damping is 0.
         The locks are to hang in the same shape however stiff they are, as with a rest shape of equilibrium.
         """
+        if bounce is None:
+            return np.ones(len(self.sag)), self._damped(steps, settle)
         if settle is None:
-
-            def shown(mode: Mode) -> Array:
-                """The frequency, until it falls again as locks stiffen, from √½ of critical damping on."""
-                too_stiff = mode.damping**2 > 2.0 * (mode.elastic + mode.weight)
-                return np.where(too_stiff, np.inf, steps.shown(self._exponent(mode))[0])
-
-            stiffer = self._stiffer(shown, np.asarray(bounce, np.float64))
-            return stiffer, np.full_like(stiffer, np.nan)
+            stiffer = self._stiffer(lambda mode: self._shown(steps, mode), bounce)
+            return stiffer, np.ones_like(stiffer)
         wanted = steps.wanted(bounce, settle)
         stiffer = self._stiffer(lambda mode: np.sqrt(mode.elastic + mode.weight), np.abs(wanted))
-        mode = self.modes.bounce(stiffer)
-        damping = (-2.0 * wanted.real - self.mass_damping - mode.drag) / mode.elastic
-        met = damping >= 0.0
-        return np.where(met, stiffer, np.nan), np.where(met, damping, np.nan)
+        return stiffer, self._damping(self.modes.bounce(stiffer), wanted)
 
-    def _stiffer(self, measure: Callable[[Mode], Array], wanted: Array) -> Array:
+    def nearer_material(self, steps: Stepping, bounce: Wanted, settle: Wanted = None) -> tuple[Array, Array]:
+        """The same factors where the shape in which locks hang depends on them: once the first is 1, both are found.
+
+        In between it is one that brings the bounce nearer, as its square grows with the stiffness at most.
+        """
+        mode = self.modes.bounce()
+        if bounce is None:
+            return np.ones(len(self.sag)), self._damped(steps, settle)
+        if settle is None:
+            return (bounce / self._shown(steps, mode)) ** 2, np.ones(len(self.sag))
+        wanted = steps.wanted(bounce, settle)
+        return np.abs(wanted) ** 2 / (mode.elastic + mode.weight), self._damping(mode, wanted)
+
+    def _damping(self, mode: Mode, wanted: NDArray[np.complex128]) -> Array:
+        """The factor on the damping of a mode that has a wanted exponent [1/s]."""
+        damping = (-2.0 * wanted.real - self.mass_damping - mode.drag).clip(0.0)
+        return damping / _positive(mode.damping)
+
+    def _shown(self, steps: Stepping, mode: Mode) -> Array:
+        """The frequency that steps show, until it falls again as locks stiffen, from √½ of critical damping on."""
+        too_stiff = mode.damping**2 > 2.0 * (mode.elastic + mode.weight)
+        return np.where(too_stiff, np.inf, steps.shown(self._exponent(mode))[0])
+
+    def _damped(self, steps: Stepping, settle: Wanted) -> Array:
+        """The factor on the damping, up to critical, with which the steps show a time to settle [s]; 1 for None."""
+        if settle is None:
+            return np.ones(len(self.sag))
+        mode = self.modes.bounce()
+        stiffness = mode.elastic + mode.weight
+        least, most = self.mass_damping + mode.drag, 2.0 * np.sqrt(stiffness)
+        low, high = least, most
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            later = steps.shown(damped_exponent(stiffness, middle))[1] > settle
+            low, high = np.where(later, middle, low), np.where(later, high, middle)
+        return np.where(high < most, (low - least) / _positive(mode.damping), np.nan)
+
+    def _stiffer(self, measure: Callable[[Mode], Array], wanted: Array | float) -> Array:
         """The factor on the stiffness at which a measure of the bounce, which grows with it, is nearest to one wanted.
 
         The measure jumps where the bounce passes from one of two modes to another.
@@ -107,3 +122,8 @@ class HangingLocks:
 
     def _exponent(self, mode: Mode) -> NDArray[np.complex128]:
         return damped_exponent(mode.elastic + mode.weight, mode.damping + mode.drag + self.mass_damping)
+
+
+def _positive(values: Array) -> Array:
+    """The same values, NaN where they are not positive."""
+    return np.where(values > 0.0, values, np.nan)

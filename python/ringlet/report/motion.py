@@ -15,25 +15,29 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 PERCENTILES = {"10 %": 10.0, "median": 50.0, "90 %": 90.0}
-COLUMNS = ["group", "word", *PERCENTILES, "by itself"]
-FOUND = [f"found, {name}" for name in PERCENTILES]
+OPTIONAL = "asked", "found"  # kinds of values that there need not be
 
 
 def columns(motion: MotionWords) -> list[str]:
-    """Columns of the table: percentiles over the locks of a group, of what was found as well where there is any."""
-    return COLUMNS + FOUND if any(word.found.size for word in motion.words) else COLUMNS
+    """Columns of the table: percentiles over the locks of a group, and medians of what was asked and of the locks by
+    themselves."""
+    asked, found = (any(getattr(word, kind).size for word in motion.words) for kind in OPTIONAL)
+    beside = ["asked"] if asked else []
+    after = [f"found, {name}" for name in PERCENTILES] if found else []
+    return ["group", "word", *beside, *PERCENTILES, "by itself", *after]
 
 
 def rows(motion: MotionWords) -> list[list[str]]:
     """A row of each word of each group."""
-    with_found = len(columns(motion)) > len(COLUMNS)
+    asked, found = (any(getattr(word, kind).size for word in motion.words) for kind in OPTIONAL)
     return [
         [
             word.group,
             f"{word.name} [{word.unit or '%'}]",
+            *(_percentiles(word, word.asked)[1:2] if asked else []),
             *_percentiles(word, word.shown),
             _percentiles(word, word.by_itself)[1],
-            *(_percentiles(word, word.found) if with_found else []),
+            *(_percentiles(word, word.found) if found else []),
         ]
         for word in motion.words
     ]
@@ -54,7 +58,7 @@ def plain(motion: MotionWords) -> list[dict[str, Any]]:
 
     return [
         {"group": word.group, "word": word.name, "unit": word.unit}
-        | {name: numbers(getattr(word, name)) for name in ("shown", "by_itself", "found")}
+        | {name: numbers(getattr(word, name)) for name in ("asked", "shown", "by_itself", "found")}
         for word in motion.words
     ]
 

@@ -24,8 +24,8 @@ from ringlet.rest.preload import STILL, hang_groom
 from ringlet.shot.shot import Shot
 from ringlet.shot.variation import Mapped
 from ringlet.sim.hair_pins import spring_fraction
-from ringlet.sim.motion import make_strands
 from ringlet.sim.obstacle import Obstacle
+from ringlet.sim.shot_strands import make_strands
 from ringlet.sim.strands import Strands
 
 Array = NDArray[np.float64]

@@ -25,7 +25,7 @@ from ringlet.rest.loft import largest_per_lock
 from ringlet.rest.rod_strains import RodStrains, measure_strains, shape_of_strains
 from ringlet.shot.shot import Shot
 from ringlet.sim.hair_pins import rigid_elements
-from ringlet.sim.motion import make_strands
+from ringlet.sim.shot_strands import make_strands
 from ringlet.sim.strands import Strands
 
 Array = NDArray[np.float64]

@@ -21,7 +21,7 @@ from ringlet.data.groom import Groom
 from ringlet.rest.loft import Loft, Progress, largest_per_lock
 from ringlet.rest.rod_strains import RodStrains, edges, measure_strains, rotate, shape_of_strains
 from ringlet.shot.shot import Shot
-from ringlet.sim.motion import make_strands
+from ringlet.sim.shot_strands import make_strands
 from ringlet.sim.strands import Strands
 from ringlet.sim.variation import at_vertices
 

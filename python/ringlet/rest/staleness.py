@@ -13,10 +13,12 @@ from ringlet.data.curves import Curves
 from ringlet.data.digest import digest
 from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
+from ringlet.shot.motion import WORDS
 from ringlet.shot.shot import Shot
 from ringlet.shot.variation import VARIATIONS
 from ringlet.sim.hair_pins import spring_fraction
 from ringlet.sim.obstacle import Obstacle
+from ringlet.sim.shot_strands import wanted_words
 from ringlet.sim.variation import at_vertices, material_factors
 
 PINNED = (
@@ -44,6 +46,8 @@ def dependencies(shot: Shot, obstacles: Sequence[Obstacle] = ()) -> dict[str, An
     """The settings of a shot that a rest shape depends on, and what locks may lie on, as plain values."""
     settings = shot.model_dump(mode="json", include=_SETTINGS)
     made = {**settings, "rest": {**settings["rest"], "mode": rest_mode(shot)}}
+    if any(getattr(shot.motion, name) is not None for name in WORDS):
+        made["motion"] = {"seed": shot.motion.seed, "substeps": shot.solver.substeps}
     if shot.touching and rest_mode(shot) == "equilibrium":
         made["contact"] = shot.touching.model_dump(mode="json", include={"radius", "friction", "pair"})
         made["bodies"] = {body.name: _of_body(body) for body in obstacles}
@@ -62,6 +66,9 @@ def _of_body(body: Obstacle) -> dict[str, Any]:
 def values_at_vertices(shot: Shot, groom: Groom) -> dict[str, NDArray[np.float64]]:
     """The values at vertices that a rest shape depends on besides their positions, by name, shape (n,) each."""
     values = {"gain": at_vertices(shot.rest, "gain", groom, "rest.gain"), **material_factors(shot, groom)}
+    for name, word in wanted_words(shot, groom).items():
+        if word is not None:
+            values[name] = np.repeat(word, groom.locks.counts)
     if "pin" in groom.locks.point:
         led = spring_fraction(groom.locks, 1.0 / (groom.space.fps * shot.solver.substeps))
         values |= dict(zip(PINNED, (groom.locks.point["pin"], led), strict=True))
@@ -77,7 +84,8 @@ def changed_locks(stored: Curves, shot: Shot, groom: Groom) -> NDArray[np.bool_]
     """Locks of a groom that differ from those of a stored rest shape, shape (count,)."""
     changed = np.linalg.norm(stored.point["groomed"] - groom.locks.points, axis=1) > SAME_PLACE
     values = values_at_vertices(shot, groom)
-    for name, default in {"gain": 1.0, **dict.fromkeys(VARIATIONS, 1.0), **dict.fromkeys(PINNED, 0.0)}.items():
+    defaults = {"gain": 1.0, **dict.fromkeys(VARIATIONS, 1.0), **dict.fromkeys((*PINNED, *WORDS), 0.0)}
+    for name, default in defaults.items():
         old, now = (np.asarray(of.get(name, np.full(len(changed), default))) for of in (stored.point, values))
         changed |= np.abs(old - now) > 1e-5 * np.maximum(now, 1e-3)
     return np.logical_or.reduceat(changed, groom.locks.offsets[:-1])

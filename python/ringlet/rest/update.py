@@ -17,8 +17,8 @@ from ringlet.rest.loft import Loft, Progress, largest_per_lock
 from ringlet.rest.preload import loft
 from ringlet.rest.staleness import changed_locks, dependencies, rest_mode, same_locks, values_at_vertices
 from ringlet.shot.shot import Shot
-from ringlet.sim.motion import make_strands
 from ringlet.sim.obstacle import Obstacle
+from ringlet.sim.shot_strands import make_strands, with_words
 
 OPTIONAL = {"sagged": "sagged", "borne": "support"}  # values at vertices that a loft may lack, by their stored names
 POSITIONS = ("groomed", "lofted", "sagged")  # values at vertices that are positions, wherever these are
@@ -35,9 +35,12 @@ def solve_rest_shape(
     progress: Progress | None = None,
 ) -> Loft:
     """The rest shape that a shot asks for, by its method; one that asks for none gets a loft. See ``equilibrium``."""
+    made = with_words(shot, groom)
     if rest_mode(shot) == "equilibrium":
-        return equilibrium(shot, groom, obstacles=obstacles, support=support, frames=frames, progress=progress)
-    return loft(shot, groom, progress=progress)
+        found = equilibrium(shot, made, obstacles=obstacles, support=support, frames=frames, progress=progress)
+    else:
+        found = loft(shot, made, progress=progress)
+    return replace(found, groom=groom)
 
 
 def to_curves(loft: Loft, shot: Shot) -> Curves:

@@ -14,6 +14,7 @@ from ringlet.data.settings import Section, parse_toml, read_toml, refuse
 from ringlet.shot.cloth import ShotCloth
 from ringlet.shot.contact import Collider, ShotContact
 from ringlet.shot.material import Material
+from ringlet.shot.motion import WORDS, WantedMotion
 from ringlet.shot.rest import Rest
 from ringlet.shot.solver import Solver
 from ringlet.shot.variation import Variation
@@ -55,6 +56,9 @@ class Shot(Section):
         description="vertices of each lock, from its root, that the scalp holds; more hold its direction more firmly",
     )
     strands: Material = Field(default=Material(), description="material of the locks")
+    motion: WantedMotion = Field(
+        default=WantedMotion(), description="motion of the locks in words, instead of their stiffness and damping"
+    )
     variation: Variation = Field(default=Variation(), description="variation of the material over locks and along them")
     rest: Rest = Field(default=Rest(), description="rest shape of the locks")
     solver: Solver = Field(default=Solver(), description="solution of a time step")
@@ -76,6 +80,15 @@ class Shot(Section):
         if wrong := wrong_frames(*frames):
             raise refuse(f"is {list(frames)}; {wrong}")
         return frames
+
+    @field_validator("motion")
+    @classmethod
+    def _words_replace_material(cls, motion: WantedMotion, info: ValidationInfo) -> WantedMotion:
+        given = info.data["strands"].model_fields_set if "strands" in info.data else ()
+        for word, setting in WORDS.items():
+            if getattr(motion, word) is not None and setting in given:
+                raise refuse(f"has {word}, which is given instead of strands.{setting}; take one of them away")
+        return motion
 
     @field_validator("collider")
     @classmethod

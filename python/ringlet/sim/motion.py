@@ -19,43 +19,18 @@ from ringlet.data.precision import compact
 from ringlet.shot.shot import Shot
 from ringlet.sim.cores import Cores
 from ringlet.sim.garment import Garment, SimulatedGarment, moved_with
-from ringlet.sim.hair_pins import held_vertices, spring_forces
+from ringlet.sim.hair_pins import spring_forces
 from ringlet.sim.lag import ROOTS, lagging
 from ringlet.sim.obstacle import Obstacle
 from ringlet.sim.resting_contacts import initial_contact_forces
 from ringlet.sim.roots import Roots
 from ringlet.sim.scene import Scene
+from ringlet.sim.shot_strands import make_strands, with_words
 from ringlet.sim.start import scene_at_start
 from ringlet.sim.statistics import StepReports, frame_statistics
-from ringlet.sim.strands import Strands
-from ringlet.sim.variation import material_factors
-from ringlet.sim.worn import worn_factors
 from ringlet.sim.written import Written
 
 UNSTABLE = "raise solver.substeps, or lower the forces and the speed of the head"
-
-
-def make_strands(
-    shot: Shot,
-    groom: Groom,
-    rest: Curves | None = None,
-    stiffened: NDArray[np.float64] | None = None,
-    of_cores: Mapping[str, NDArray[np.float64]] | None = None,
-) -> Strands:
-    """The locks of a groom as strands of a shot's material, whose rest shape is the groomed or another one.
-
-    stiffened: times that each lock is stiffer against bend than that material, shape (count,)
-    of_cores:  further factors on the material, at the vertices of the locks, by name, shape (n,) each
-    """
-    factors = {**material_factors(shot, groom)}
-    for name, factor in (of_cores or {}).items():
-        factors[name] = factors.get(name, 1.0) * factor
-    of_worn = worn_factors(groom.locks, shot.strands, factors.get("radius", np.ones(len(groom.locks.points))))
-    for name, factor in of_worn.items():
-        factors[name] = factors.get(name, 1.0) * factor
-    if stiffened is not None:
-        factors["bend"] = factors.get("bend", 1.0) * np.repeat(stiffened, groom.locks.counts)
-    return Strands(rest or groom.locks, shot.strands, held_vertices(groom.locks, shot.held), factors)
 
 
 class Motion:
@@ -80,7 +55,7 @@ class Motion:
     ) -> None:
         check_locks(shot, groom.locks)
         self.cores, rest_of_all = Cores.of(groom), rest
-        groom, rest = self.cores.groom, rest and self.cores.reduced(rest)
+        groom, rest = with_words(shot, self.cores.groom, self.cores.material()), rest and self.cores.reduced(rest)
         self.shot, self.clip, self.locks, self.first = shot, clip, groom.locks, first
         self.roots = Roots(groom)
         stiffened = None if rest is None else rest.curve.get("stiffened")

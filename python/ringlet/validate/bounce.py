@@ -24,6 +24,7 @@ from ringlet.groom import PRESETS, make_groom, parse_recipe
 from ringlet.motion import CoilLengths, HangingLocks, Integrator, Stepping
 from ringlet.shot.material import Material
 from ringlet.shot.solver import Solver
+from ringlet.sim.hanging import hang
 from ringlet.sim.strands import Strands
 from ringlet.validate.case import Case, Row
 from ringlet.validate.rods import bending_stiffness, line_density, rod_material, strand
@@ -90,7 +91,7 @@ class Plucked:
 
         def hung(material: Material) -> Plucked:
             strands = Strands(curves, material, 3)
-            locks = HangingLocks.of(strands, groomed, (0.0, -GRAVITY, 0.0))
+            locks = hang(strands, groomed, (0.0, -GRAVITY, 0.0))
             return cls(strands, groomed, strands.positions.copy(), locks)
 
         omega = 2.0 * np.pi * hung(material).locks.words().bounce[0]
@@ -165,7 +166,7 @@ def spring(turns: int) -> Iterator[tuple[str, float, float]]:
     bend = bending_stiffness(material)
     flexibility = radius**2 * (np.cos(angle) ** 2 / (material.twist_ratio * bend) + np.sin(angle) ** 2 / bend)
     bounce = 0.25 / (length * np.sqrt(line_density(material) * flexibility))
-    words = HangingLocks.of(strand(points, material, 3), points, (0.0, -gravity, 0.0)).words()
+    words = hang(strand(points, material, 3), points, (0.0, -gravity, 0.0)).words()
     yield "bounce [Hz]", bounce, words.bounce[0]
     yield "sag", gravity / (32.0 * bounce**2) / np.linalg.norm(points[-1] - points[0]), words.sag[0]
 

@@ -8,7 +8,7 @@ import { bindKey, plainKey } from "./keys";
 import { Schemas, type Setting } from "./schema";
 
 const MOST = 40; // results that are listed
-const SHOT_TABLES = ["strands", "variation", "solver", "forces", "contact"];
+const SHOT_TABLES = ["strands", "motion", "variation", "solver", "forces", "contact"];
 
 /** A setting of a stage; `inner` is one in its table. */
 interface Found {

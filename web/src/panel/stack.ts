@@ -38,7 +38,7 @@ export class Stack {
     }
     if (shot) {
       parts.push(h("h2", {}, "shot"), this.shotRow("shot", []));
-      for (const name of ["strands", "variation", "solver", "forces", "contact"])
+      for (const name of ["strands", "motion", "variation", "solver", "forces", "contact"])
         if (shot.values[name]) parts.push(this.shotRow(name, [name]));
       for (const kind of ["cloth", "collider"])
         for (const [k, entry] of ((shot.values[kind] ?? []) as Json[] as Entry[]).entries())

@@ -11,17 +11,18 @@ from ringlet.data.curves import Curves
 from ringlet.data.groom import GROOM, Groom
 from ringlet.data.mesh import Clip
 from ringlet.data.motion import MotionWords, Word
-from ringlet.motion.coils import seen_motion
-from ringlet.motion.stepping import Stepping, advised_steps
-from ringlet.motion.words import HangingLocks, Words
+from ringlet.motion import Words, advised_steps, seen_motion
 from ringlet.shot.shot import Shot
 from ringlet.sim.cores import Cores
-from ringlet.sim.motion import check_locks, make_strands
+from ringlet.sim.hanging import hang
+from ringlet.sim.motion import check_locks
 from ringlet.sim.roots import Roots
+from ringlet.sim.shot_strands import make_strands, steps_of, wanted_words
 
 Array = NDArray[np.float64]
 
 UNITS = {"bounce": "Hz", "settle": "s", "sag": "", "swing": "Hz"}
+AGREES = 0.05  # deviation from what was asked that is none, relative to it
 KEPT = 0.8  # part of its own time to settle that a bounce keeps at the advised steps, and that is enough
 
 
@@ -45,14 +46,17 @@ def words_of_shot(
     strands = make_strands(shot, cores.groom, rest, stiffened, cores.material())
     groomed = Roots(cores.groom).carry(clip.at(first), first)
     strands.place(groomed)
-    hanging = HangingLocks.of(strands, groomed, shot.forces.gravity)
-    steps = Stepping(1.0 / (clip.fps * shot.solver.substeps), shot.solver.integrator)
+    hanging = hang(strands, groomed, shot.forces.gravity)
+    steps = steps_of(shot, clip.fps)
     shown, by_itself = hanging.words(steps), hanging.words()
     seen = simulated and seen_motion(groom.locks, simulated, shot.forces.gravity, clip.fps)
+    wanted = wanted_words(shot, cores.groom)
     words = list[Word]()
     for group, of_all, of_simulated in _groups(groom, locks):
         for name, unit in UNITS.items():
-            word = Word(group, name, unit, getattr(shown, name)[of_simulated])
+            word = Word(group, name, unit, shown=getattr(shown, name)[of_simulated])
+            if (asked := wanted.get(name)) is not None:
+                word.asked = asked[of_simulated]
             if name != "sag":
                 word.by_itself = getattr(by_itself, name)[of_simulated]
             if seen and name in ("bounce", "settle"):
@@ -60,7 +64,7 @@ def words_of_shot(
             words.append(word)
         if seen:
             words += [Word(group, name, "", found=getattr(seen, name)[of_all]) for name in ("opens", "closes")]
-    return MotionWords(words, list(_notes(shot, clip, shown, by_itself)))
+    return MotionWords(words, [*_unmet(words), *_notes(shot, clip, shown, by_itself)])
 
 
 def _groups(groom: Groom, simulated: Curves) -> list[tuple[str, NDArray[np.bool_], NDArray[np.bool_]]]:
@@ -70,6 +74,16 @@ def _groups(groom: Groom, simulated: Curves) -> list[tuple[str, NDArray[np.bool_
     return [
         (name, groom.locks.curve[GROOM] == row, simulated.curve[GROOM] == row) for row, name in enumerate(groom.grooms)
     ]
+
+
+def _unmet(words: list[Word]) -> Iterable[str]:
+    """Sentences about words that some locks do not show as asked."""
+    for word in words:
+        if word.asked.size and (off := ~(np.abs(word.shown / word.asked - 1.0) <= AGREES)).any():
+            yield (
+                f"{off.sum()} of {off.size} {word.group} do not show the {word.name} that is asked: they are pinned, "
+                f"bounce faster by their weight alone, or are settled sooner by the steps or the air."
+            )
 
 
 def _notes(shot: Shot, clip: Clip, shown: Words, by_itself: Words) -> Iterable[str]:
