@@ -1,6 +1,6 @@
 """Compares a hairstyle in contact with the rest shapes none, lofted and equilibrium. Prints JSON after some minutes.
 
-python tools/proof/rest_shapes.py STYLE [--locks 100] [--pictures FOLDER] [--head FILE --region NAME]
+python tools/proof/rest_shapes.py STYLE [--locks 100] [--modes MODE …] [--pictures FOLDER] [--head FILE --region NAME]
 python tools/proof/rest_shapes.py STYLE --locks 30 --springs 0.1 0.5 0.72
 
 1. Drift: the head stands still for 10 s with equilibrium and for 3 s with the other rest shapes.
@@ -16,6 +16,7 @@ from __future__ import annotations
 import argparse
 import json
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -28,14 +29,15 @@ import ringlet
 from ringlet.rest import solve_rest_shape
 
 
-def compared(name: str, style: Style, seconds: float, picture: Path | None) -> dict[str, Any]:
-    """What each rest mode does to a style: ``modes``, and ``swing`` in equilibrium relative to the shapes without it.
+def compared(name: str, style: Style, chosen: Sequence[str], seconds: float, picture: Path | None) -> dict[str, Any]:
+    """What rest modes do to a style: ``modes``, and with all ``swing`` in equilibrium relative to shapes without it.
 
     A mode has the drift, the distance of the rest shape from the groom, and both of vertices that touch the head.
     """
     groomed, ends, swings = np.asarray(style.groom.locks.points, np.float64), {}, {}
     on_head, weightless, modes = style.on_head(), {}, {}
-    for mode in MODES:
+    swinging = set(chosen) == set(MODES)
+    for mode in chosen:
         shot, began = style.shot(mode), time.process_time()
         made = None if mode == "none" else solve_rest_shape(shot, style.groom, obstacles=[style.head(np.zeros(1), FPS)])
         took = time.process_time() - began
@@ -43,7 +45,7 @@ def compared(name: str, style: Style, seconds: float, picture: Path | None) -> d
         for points in style.at_rest(shot, rest, seconds if mode == "equilibrium" else min(seconds, SAG_TIME)):
             ends[mode] = points.copy()
         drift = np.linalg.norm(ends[mode] - groomed, axis=1)
-        if mode != "lofted":
+        if swinging and mode != "lofted":
             swings[mode] = style.bounce(shot, rest, ends[mode])
         found = {"mean_mm": 1e3 * drift.mean()}
         found |= {f"{part}_um": 1e6 * np.percentile(drift, part) for part in (99, 100)}
@@ -57,9 +59,10 @@ def compared(name: str, style: Style, seconds: float, picture: Path | None) -> d
                 rise = 1e3 * np.linalg.norm(end - groomed, axis=1)[on_head].mean()
                 found["on_head"] = {"rest_mm": away[on_head].mean(), "rise_mm": rise}
         modes[mode] = found
-    swings["weightless"] = style.bounce(style.shot("none", 0.0), None, groomed)
     swing = {}
-    for plain in ("none", "weightless"):
+    if swinging:
+        swings["weightless"] = style.bounce(style.shot("none", 0.0), None, groomed)
+    for plain in ("none", "weightless") if swinging else ():
         ratios = (mine / theirs for mine, theirs in zip(swings["equilibrium"], swings[plain], strict=True))
         swing[plain] = dict(zip(("frequency", "amplitude"), (float(np.median(ratio)) for ratio in ratios), strict=True))
     if picture is not None:
@@ -108,6 +111,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("style", choices=STYLES)
     parser.add_argument("--locks", type=int, default=100, help="number of locks")
+    parser.add_argument("--modes", nargs="+", choices=MODES, default=MODES, help="rest modes; the swing needs all")
     parser.add_argument("--seconds", type=float, default=10.0, help="duration of the drift")
     parser.add_argument("--pictures", type=Path, help="folder for a picture of each style")
     parser.add_argument("--head", type=Path, default=HEAD, help="mesh of the head")
@@ -118,7 +122,7 @@ def main() -> None:
     if options.springs:
         found = springs(style, options.springs, options.seconds)
     else:
-        found = compared(options.style, style, options.seconds, options.pictures)
+        found = compared(options.style, style, options.modes, options.seconds, options.pictures)
     print(json.dumps({"style": options.style, "locks": options.locks, "seconds": options.seconds, **found}, indent=1))
 
 
