@@ -13,7 +13,7 @@ from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
 from ringlet.data.painted import per_lock
 from ringlet.data.random import Random
-from ringlet.motion import HangingLocks, Stepping, advised_steps
+from ringlet.motion import Stepping, advised_steps
 from ringlet.shot.motion import WORDS
 from ringlet.shot.shot import Shot
 from ringlet.sim.hair_pins import held_vertices
@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 
 # Attributes of locks: factors on their material, by its variation, with which they move as words say.
 WANTED = {"bend": "wanted_bend", "damping": "wanted_damping"}
-ROUNDS = 12  # in which stiffness and the shape that it gives are found
+ROUNDS = 10  # in which stiffness and the shape that it gives are found
 LARGEST = 4.0  # factor on the stiffness in a round
 FOUND, MET = 0.002, 0.05  # changes of the stiffness in a round at which it is found, and at which it counts as such
 
@@ -88,27 +88,37 @@ def with_words(shot: Shot, groom: Groom, of_cores: Mapping[str, Array] | None = 
     steps = steps_of(shot, groom.space.fps)
     _check_steps(shot, groom, steps, words)
 
-    def of_factors(bend: Array, damping: Array) -> Groom:
-        factors = {WANTED["bend"]: bend, WANTED["damping"]: damping}
-        return replace(groom, locks=replace(groom.locks, curve=groom.locks.curve | factors))
+    def material(which: NDArray[np.bool_], bend: Array) -> tuple[Array, Array]:
+        """Factors for some locks that are so many times stiffer, as ``HangingLocks.material``."""
+        rows = np.repeat(which, groom.locks.counts)
+        part = _with_factors(replace(groom, locks=groom.locks.take(which)), bend[which], np.ones(which.sum()))
+        strands = make_strands(shot, part, of_cores={name: of[rows] for name, of in (of_cores or {}).items()})
+        hanging = hang(strands, part.locks.points, shot.forces.gravity, settle=sags)
+        method = hanging.nearer_material if sags else hanging.material
+        return method(steps, *(None if word is None else word[which] for word in words.values()))
 
-    ones = np.ones(len(groom.locks))
-
-    def hanging(bend: Array, settle: bool) -> HangingLocks:
-        strands = make_strands(shot, of_factors(bend, ones), of_cores=of_cores)
-        return hang(strands, groom.locks.points, shot.forces.gravity, settle=settle)
-
-    if shot.rest.mode != "none":  # they hang as groomed
-        bend, damping = hanging(ones, settle=False).material(steps, **words)
-        return of_factors(np.nan_to_num(bend, nan=1.0), np.nan_to_num(damping, nan=1.0))
-    bend, damping, met = ones, ones, ones > 1.0
+    sags, pending = shot.rest.mode == "none", np.ones(len(groom.locks), bool)
+    bend, damping = np.ones((2, len(groom.locks)))
+    if not sags:
+        bend, damping = (np.nan_to_num(of, nan=1.0) for of in material(pending, bend))
+        return _with_factors(groom, bend, damping)
+    met = ~pending
     for _ in range(ROUNDS):
-        stiffer, damping = hanging(bend, settle=True).nearer_material(steps, **words)
-        met = np.abs(stiffer - 1.0) <= MET
-        if (np.abs(stiffer - 1.0) < FOUND).all():
+        stiffer, of_pending = material(pending, bend)
+        stiffer = np.nan_to_num(stiffer, nan=LARGEST)  # where they fall over
+        damping[pending] = np.nan_to_num(of_pending, nan=1.0)
+        met[pending] = np.abs(stiffer - 1.0) <= MET
+        bend[pending] *= stiffer.clip(1.0 / LARGEST, LARGEST)
+        pending[pending] = np.abs(stiffer - 1.0) > FOUND
+        if not pending.any():
             break
-        bend = bend * np.nan_to_num(stiffer, nan=LARGEST).clip(1.0 / LARGEST, LARGEST)  # stiffer where they fall over
-    return of_factors(np.where(met, bend, 1.0), np.where(met, np.nan_to_num(damping, nan=1.0), 1.0))
+    return _with_factors(groom, np.where(met, bend, 1.0), np.where(met, damping, 1.0))
+
+
+def _with_factors(groom: Groom, bend: Array, damping: Array) -> Groom:
+    """The groom whose locks have these factors on their material, shapes (count,)."""
+    factors = {WANTED["bend"]: bend, WANTED["damping"]: damping}
+    return replace(groom, locks=replace(groom.locks, curve=groom.locks.curve | factors))
 
 
 def _check_steps(shot: Shot, groom: Groom, steps: Stepping, words: dict[str, Array | None]) -> None:
