@@ -1,8 +1,8 @@
-// A scene of strands, a cloth and a body on a move, and what the pair cache finds in it.
+// A scene of strands, a cloth and a body on a move, and which pairs have impacts and contacts.
 #pragma once
 
 #include "ringlet/ccd/time_of_impact.h"
-#include "ringlet/collision/pair_cache.h"
+#include "ringlet/collision/move_candidates.h"
 
 #include <cmath>
 #include <random>
@@ -76,28 +76,76 @@ inline SweptBoxes boxes_of_move(const CollisionMesh &mesh, const std::vector<Vec
 
 using Pairs = std::set<std::array<int, 3>>;
 
-// The impact candidates that have an impact on straight paths.
-inline Pairs impacts(const CollisionMesh &mesh, PairCache &cache, const std::vector<Vec3> &start,
+inline std::array<int, 3> name(const PrimitivePair &pair) { return {pair.edge_edge, pair.primitive[0], pair.primitive[1]}; }
+
+// Whether a pair has an impact on straight paths.
+inline bool has_impact(const CollisionMesh &mesh, const PrimitivePair &pair, const std::vector<Vec3> &start,
+                       const std::vector<Vec3> &end) {
+    return with_vertices(mesh, pair, [&](const auto &a, const auto &b) {
+        Vec3 x[4], p[4];
+        int i = 0;
+        for (const int v : a) x[i] = start[v], p[i++] = end[v] - start[v];
+        for (const int v : b) x[i] = start[v], p[i++] = end[v] - start[v];
+        const double kept = collision::impact_distance * pair.d_hat;
+        return (pair.edge_edge ? edge_edge_toi(x, p, kept) : point_triangle_toi(x, p, kept)) <= 1.0;
+    });
+}
+
+// The impact candidates that have an impact.
+inline Pairs impacts(const CollisionMesh &mesh, const MoveCandidates &pairs, const std::vector<Vec3> &start,
                      const std::vector<Vec3> &end) {
-    Pairs pairs;
-    for (const CandidatePair *pair : cache.impact_candidates())
-        with_vertices(mesh, *pair, [&](const auto &a, const auto &b) {
-            Vec3 x[4], p[4];
-            int i = 0;
-            for (const int v : a) x[i] = start[v], p[i++] = end[v] - start[v];
-            for (const int v : b) x[i] = start[v], p[i++] = end[v] - start[v];
-            const double kept = collision::impact_distance * pair->d_hat;
-            const double time = pair->edge_edge ? edge_edge_toi(x, p, kept) : point_triangle_toi(x, p, kept);
-            if (time <= 1.0) pairs.insert({pair->edge_edge, pair->primitive[0], pair->primitive[1]});
+    Pairs found;
+    for (const CandidatePair *pair : pairs.impact_candidates())
+        if (has_impact(mesh, *pair, start, end)) found.insert(name(*pair));
+    return found;
+}
+
+inline Pairs contacts(MoveCandidates &pairs, const std::vector<Vec3> &positions) {
+    Pairs found;
+    for (const ContactPair &touch : pairs.contact_pairs(positions)) found.insert(name(touch));
+    return found;
+}
+
+template <size_t N> bool any_moves(const CollisionMesh &mesh, const std::array<int, N> &vertices) {
+    return std::any_of(vertices.begin(), vertices.end(), [&](int v) { return mesh.moves[v]; });
+}
+
+template <class A, class B> bool excluded(const CollisionMesh &mesh, const A &a, const B &b) {
+    return share_vertex(a, b) || anchored(mesh, a, b) || (!any_moves(mesh, a) && !any_moves(mesh, b));
+}
+
+// All pairs that are tested, wherever they are.
+inline std::vector<PrimitivePair> all_pairs(const CollisionMesh &mesh) {
+    std::vector<PrimitivePair> pairs;
+    const auto add = [&](const PrimitivePair &pair) {
+        with_vertices(mesh, pair, [&](const auto &a, const auto &b) {
+            if (excluded(mesh, a, b)) return;
+            pairs.push_back(pair);
+            pairs.back().d_hat = activation_distance(mesh, a, b);
         });
+    };
+    for (int a = 0; a < int(mesh.edges.size()); ++a)
+        for (int b = a + 1; b < int(mesh.edges.size()); ++b) add({{a, b}, true, 0.0});
+    for (const int v : mesh.points)
+        for (int t = 0; t < int(mesh.triangles.size()); ++t) add({{v, t}, false, 0.0});
     return pairs;
 }
 
-inline Pairs contacts(PairCache &cache, const std::vector<Vec3> &positions) {
-    Pairs pairs;
-    for (const ContactPair &touch : cache.contact_pairs(positions))
-        pairs.insert({touch.edge_edge, touch.primitive[0], touch.primitive[1]});
-    return pairs;
+// Of all pairs those that have an impact, and those nearer than their activation distance.
+inline Pairs all_impacts(const CollisionMesh &mesh, const std::vector<Vec3> &start, const std::vector<Vec3> &end) {
+    Pairs found;
+    for (const PrimitivePair &pair : all_pairs(mesh))
+        if (has_impact(mesh, pair, start, end)) found.insert(name(pair));
+    return found;
+}
+
+inline Pairs all_contacts(const CollisionMesh &mesh, const std::vector<Vec3> &positions) {
+    Pairs found;
+    for (const PrimitivePair &pair : all_pairs(mesh))
+        with_vertices(mesh, pair, [&](const auto &a, const auto &b) {
+            if (std::sqrt(closest_points(positions, a, b).distance2) < pair.d_hat) found.insert(name(pair));
+        });
+    return found;
 }
 
 } // namespace ringlet

@@ -3,8 +3,8 @@
 
 #include "random.h"
 #include "ringlet/ccd/impact_zones.h"
+#include "ringlet/ccd/limit_move.h"
 #include "ringlet/ccd/local_truncation.h"
-#include "ringlet/ccd/motion_limiter.h"
 
 namespace ringlet {
 
@@ -38,44 +38,55 @@ struct Crowd {
 
     ConnectedMesh connected() const { return {mesh, View<int>(offsets)}; }
 
-    // Paths longer than `max_path` escape their bounds [m].
-    CcdReport limit(std::vector<Vec3> &limited, bool whole = false, double max_path = 0.0) const {
-        PairCache pairs(mesh);
-        pairs.update_bounds({start, end}, {.margin = 0.005, .max_path = max_path});
-        limited = end;
-        return limit_motion({.connected = connected(), .start = start, .whole_strands = whole}, pairs, limited);
+    // Candidate pairs of a move. Paths longer than `max_path` escape their bounds [m].
+    struct Found {
+        Candidates candidates;
+        MoveCandidates pairs;
+
+        Found(const CollisionMesh &mesh, const Move &move, double max_path = 0.0) : candidates(mesh), pairs(candidates) {
+            candidates.enclose(move, {.margin = 0.005, .max_path = max_path});
+            pairs.begin(move);
+        }
+    };
+
+    CcdReport limit(std::vector<Vec3> &limited, StrandLimit strands = StrandLimit::near_impacts, double max_path = 0.0) const {
+        Found found(mesh, {start, end}, max_path);
+        PlannedMove move{end, {}};
+        const CcdReport report = limit_move({connected(), start, strands}, found.pairs, move);
+        limited = move.to;
+        return report;
     }
 
     CcdReport resolve(std::vector<Vec3> &resolved) const {
-        PairCache pairs(mesh);
+        Found found(mesh, {start, start});
         resolved = end;
-        AdvectedMove move(connected(), pairs, start, resolved);
+        AdvectedMove move(connected(), found.pairs, start, resolved);
         resolve_impact_zones({View<double>(mass), [](int, const Vec3 &point) { return point; }}, move);
         truncate_locally(move);
         return move.report();
     }
 
     // Limits a move; then every third strand is shortened further, and the rest of the move is limited again.
-    CcdReport limit_and_shorten(std::vector<Vec3> &limited, bool whole = false) const {
-        PairCache pairs(mesh);
-        pairs.update_bounds({start, end}, {.margin = 0.0005, .max_path = 0.1});
-        limited = end;
-        limit_motion({.connected = connected(), .start = start, .whole_strands = whole}, pairs, limited);
+    CcdReport limit_and_shorten(std::vector<Vec3> &limited, StrandLimit strands) const {
+        Found found(mesh, {start, end}, 0.1);
+        PlannedMove move{end, {}};
+        limit_move({connected(), start, strands}, found.pairs, move);
         std::vector<unsigned char> changed(start.size(), 0);
         for (size_t v = 0; v < start.size(); ++v)
             if (mesh.object[v] % 3 == 0) {
                 changed[v] = 1;
-                limited[v] = start[v] + 0.3 * (limited[v] - start[v]);
+                move.to[v] = start[v] + 0.3 * (move.to[v] - start[v]);
             }
-        return limit_motion({.connected = connected(), .start = start, .whole_strands = true, .changed = changed}, pairs,
-                            limited);
+        found.pairs.update({start, move.to}, changed);
+        const CcdReport report = limit_move({connected(), start, StrandLimit::whole}, found.pairs, move);
+        limited = move.to;
+        return report;
     }
 
-    // Whether any pair has an impact, asked of all pairs.
+    // Whether any pair has an impact, asked of pairs that are found for this move alone.
     bool has_impacts(const std::vector<Vec3> &to) const {
-        PairCache all(mesh);
-        all.begin_move({start, to});
-        return !find_impacts(mesh, all.impact_candidates(), start, to).empty();
+        const Found found(mesh, {start, to}, 1.0);
+        return !find_impacts(mesh, found.pairs.impact_candidates(), start, to).empty();
     }
 
     // The least distance of any two strands on the move, from dense samples [m].

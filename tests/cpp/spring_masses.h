@@ -157,7 +157,7 @@ struct SpringScene {
 
     // The pairs that touch at the positions.
     std::vector<ContactPair> touching() {
-        configuration->pairs.clear();
+        configuration->candidates.clear();
         return configuration->contact_pairs();
     }
 

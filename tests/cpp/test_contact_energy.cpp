@@ -1,6 +1,6 @@
 // Contacts: barrier, friction, and the stiffness of a pair.
 #include "random.h"
-#include "ringlet/collision/pair_cache.h"
+#include "ringlet/collision/move_candidates.h"
 #include "ringlet/contact/contact_set.h"
 
 #include <boost/test/unit_test.hpp>
@@ -124,8 +124,10 @@ BOOST_AUTO_TEST_CASE(edges_that_touch_at_prescribed_ends_are_no_stiffer_than_the
     for (const double turned : {0.0, 1e-6, 1e-3}) {
         const std::vector<Vec3> now = {{0, 0, 0}, {0.01, 0, 0}, {turned, -turned, 1e-3}, {turned, 0.01, 1e-3}};
         mesh.rest = now;
-        PairCache pairs(mesh);
-        pairs.update_bounds({now, now}, {.margin = 1e-3, .max_path = 0.1});
+        Candidates candidates(mesh);
+        candidates.enclose({now, now}, {.margin = 1e-3, .max_path = 0.1});
+        MoveCandidates pairs(candidates);
+        pairs.begin({now, now});
         ContactSet contacts;
         contacts.find(mesh, material, pairs.contact_pairs(now), now, now);
         BOOST_REQUIRE(contacts.contacts().size() == 1u);

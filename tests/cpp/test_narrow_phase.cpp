@@ -10,13 +10,7 @@ BOOST_AUTO_TEST_SUITE(narrow_phase)
 BOOST_AUTO_TEST_CASE(contact_pairs_are_the_pairs_nearer_than_their_activation_distance) {
     const CollisionScene scene(3, 0.0);
     const CollisionMesh &mesh = scene.mesh;
-    Candidates candidates;
-    BroadPhase(mesh).find(boxes_of_move(mesh, scene.start, scene.start, 0.05), candidates);
-    std::vector<PrimitivePair> pairs;
-    for (const auto &pair : candidates.edge_edge)
-        pairs.push_back({pair, true, activation_distance(mesh, mesh.edges[pair[0]], mesh.edges[pair[1]])});
-    for (const auto &pair : candidates.point_triangle)
-        pairs.push_back({pair, false, activation_distance(mesh, std::array{pair[0]}, mesh.triangles[pair[1]])});
+    const std::vector<PrimitivePair> pairs = all_pairs(mesh);
     std::vector<ContactPair> found;
     {
         const auto ignore = [](const PrimitivePair &, double) {};
@@ -42,26 +36,23 @@ BOOST_AUTO_TEST_CASE(reachable_pairs_hold_all_contacts_of_marked_objects_at_any_
     const CollisionMesh &mesh = scene.mesh;
     for (size_t v = 0; v < scene.end.size(); ++v)
         if (!mesh.moves[v]) scene.end[v] = scene.start[v];
-    PairCache cache(mesh);
-    cache.begin_move({scene.start, scene.end});
+    Candidates candidates(mesh);
+    candidates.enclose({scene.start, scene.start}, {.margin = 0.01, .max_path = 0.0});
+    MoveCandidates pairs(candidates);
+    pairs.begin({scene.start, scene.end});
     std::vector<unsigned char> marked(32, 0);
     for (int object = 0; object < 32; object += 2) marked[object] = 1;
-    const ReachablePairs reachable = cache.reachable_pairs(marked);
+    const ReachablePairs reachable = pairs.reachable_pairs(marked);
     for (const double fraction : {0.0, 0.4, 1.0}) {
         std::vector<Vec3> x = scene.start;
         for (size_t v = 0; v < x.size(); ++v) x[v] += fraction * (scene.end[v] - scene.start[v]);
-        PairCache there(mesh);
-        there.begin_move({x, x});
         Pairs expected, found;
-        for (const ContactPair &pair : there.contact_pairs(x)) {
-            const auto object = [&](int k) {
-                const int i = pair.primitive[k];
-                return mesh.object[pair.edge_edge ? mesh.edges[i][0] : k == 0 ? i : mesh.triangles[i][0]];
-            };
-            if (marked[object(0)] || marked[object(1)]) expected.insert({pair.edge_edge, pair.primitive[0], pair.primitive[1]});
+        for (const auto &[edge_edge, i, j] : all_contacts(mesh, x)) {
+            const int first = edge_edge ? mesh.edges[i][0] : i, second = edge_edge ? mesh.edges[j][0] : mesh.triangles[j][0];
+            if (marked[mesh.object[first]] || marked[mesh.object[second]]) expected.insert({edge_edge, i, j});
         }
         for (const ContactPair &pair : contact_pairs(mesh, reachable, x, marked, std::vector<double>(32, fraction)))
-            found.insert({pair.edge_edge, pair.primitive[0], pair.primitive[1]});
+            found.insert(name(pair));
         BOOST_TEST(expected.size() > 5);
         BOOST_TEST((found == expected));
     }

@@ -4,14 +4,14 @@
 
 namespace ringlet {
 
-AdvectedMove::AdvectedMove(const ConnectedMesh &connected_, PairCache &pairs, View<Vec3> start_, std::vector<Vec3> &end_)
+AdvectedMove::AdvectedMove(const ConnectedMesh &connected_, MoveCandidates &pairs, View<Vec3> start_, std::vector<Vec3> &end_)
     : connected(connected_), start(start_), end(end_), pairs_(pairs), corrected_(end.size(), 0) {
     find_impacts();
     report_.candidates = pairs_.size(), report_.impacts = int(impacts_.size());
 }
 
 void AdvectedMove::find_impacts() {
-    pairs_.begin_move({start, end});
+    pairs_.begin({start, end});
     impacts_ = ringlet::find_impacts(connected.mesh, pairs_.impact_candidates(), start, end);
     mark_vertices(connected.mesh, impacts_, corrected_);
 }

@@ -13,7 +13,7 @@ namespace ringlet {
 // vertex moves straight from `start` to `end`.
 class AdvectedMove {
 public:
-    AdvectedMove(const ConnectedMesh &connected, PairCache &pairs, View<Vec3> start, std::vector<Vec3> &end);
+    AdvectedMove(const ConnectedMesh &connected, MoveCandidates &pairs, View<Vec3> start, std::vector<Vec3> &end);
 
     const ConnectedMesh connected;
     const View<Vec3> start; // [m]
@@ -33,7 +33,7 @@ public:
 private:
     void find_impacts();
 
-    PairCache &pairs_;
+    MoveCandidates &pairs_;
     std::vector<unsigned char> corrected_; // per vertex
     std::vector<Impact> impacts_;
     CcdReport report_;

@@ -1,7 +1,7 @@
 // Impacts: candidate pairs that come nearer on a move than their minimum separation.
 #pragma once
 
-#include "ringlet/collision/pair_cache.h"
+#include "ringlet/collision/move_candidates.h"
 
 #include <array>
 #include <vector>
@@ -28,9 +28,9 @@ void mark_vertices(const CollisionMesh &mesh, const std::vector<Impact> &impacts
 // Truncates a whole move before its first impact; returns the fraction of it that is left.
 double truncate_before_first(const std::vector<Impact> &impacts, View<Vec3> start, std::vector<Vec3> &end);
 
-// What limit_motion() or the corrections of an AdvectedMove did.
+// What limit_move() or the corrections of an AdvectedMove did.
 struct CcdReport {
-    int candidates = 0;         // pairs in the cache
+    int candidates = 0;         // pairs
     int impacts = 0;            // of the move before any correction
     int corrected_vertices = 0; // moving vertices with an impact in any round
     int rounds = 0;

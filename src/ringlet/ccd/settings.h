@@ -24,7 +24,7 @@ inline constexpr double separation_limit = 0.9;                           // of 
 inline constexpr double max_strain = 0.05;         // that spreading a correction puts into an edge
 inline constexpr double before_first_impact = 0.9; // of the first time of impact, where a whole move is truncated
 
-// limit_motion
+// limit_move
 inline constexpr double before_impact = 0.98; // of the time at which a strand meets one that goes less far
 inline constexpr int strand_rounds = 8;       // then strands with impacts rest
 inline constexpr int local_strand_rounds = 2; // in which strands that could hardly move are corrected locally

@@ -8,8 +8,6 @@
 namespace ringlet {
 namespace {
 
-using Pair = std::array<int, 2>; // two primitives
-
 Traversal traversal(const Bvh &a, const Bvh &b, bool is_static) {
     Traversal traversal;
     traversal.a = a.nodes(), traversal.b = b.nodes(), traversal.one_tree = &a == &b, traversal.is_static = is_static;
@@ -38,13 +36,6 @@ std::vector<NodePair> split(const Bvh &a, const Bvh &b, bool is_static) {
     return pairs;
 }
 
-// The sum of the radii of two primitives, less their activation distance.
-template <size_t N, size_t M>
-float excess(const CollisionMesh &mesh, const std::array<int, N> &a, const std::array<int, M> &b) {
-    if (mesh.object[a[0]] != mesh.object[b[0]]) return 0.0f;
-    return static_cast<float>(mean_radius(mesh, a) + mean_radius(mesh, b) - activation_distance(mesh, a, b));
-}
-
 // Removes the pairs of edges that separated() reports, in order.
 template <class EdgePairs, class Separated>
 void cull(const Bvh &edges, const SweptBoxes &boxes, const Separated &separated, Traversal &traversal) {
@@ -63,13 +54,13 @@ void cull(const Bvh &edges, const SweptBoxes &boxes, const Separated &separated,
 }
 
 // Boxes say little about long edges that are askew.
-void cull_edges(const Bvh &edges, const SweptBoxes &bounds, const SweptBoxes *move, Traversal &found) {
+void cull_edges(const Bvh &edges, const SweptBoxes &boxes, const SweptBoxes *move, Traversal &found) {
     const auto in_triangles = [](const MovingEdgePairs &some) { return RINGLET_DISPATCH(separated_in_triangles, some); };
     const auto in_boxes = [](const BoxedEdgePairs &some) { return RINGLET_DISPATCH(separated_in_boxes, some); };
     if (move != nullptr)
         cull<MovingEdgePairs>(edges, *move, in_triangles, found);
     else
-        cull<BoxedEdgePairs>(edges, bounds, in_boxes, found);
+        cull<BoxedEdgePairs>(edges, boxes, in_boxes, found);
 }
 
 } // namespace
@@ -88,59 +79,65 @@ template <class Work> void BroadPhase::for_trees(const Work &work) {
     work(triangle_tree_, mesh_.triangles, [](const SweptBoxes &boxes, int i) { return boxes.of_triangle(i); });
 }
 
-void BroadPhase::find(const SweptBoxes &boxes, Candidates &candidates, View<unsigned char> changed, const SweptBoxes *move) {
+void BroadPhase::fit(const SweptBoxes &boxes) {
     for_trees([&](Bvh &tree, const auto &primitives, const auto &box_of) {
         tree.fit(int(primitives.size()), [&](int i) {
             SweptBox box = box_of(boxes, i);
-            box.set_flags(changed.empty() || any_of(changed, primitives[i]), any_of(mesh_.moves, primitives[i]));
+            box.set_flags(true, any_of(mesh_.moves, primitives[i]));
             return box;
         });
     });
-    search_all(boxes, candidates, move);
-    unbounded_.assign(mesh_.moves.size(), 0);
 }
 
-void BroadPhase::find_escaped(const SweptBoxes &move, const SweptBoxes &bounds, View<unsigned char> escaped,
-                              View<unsigned char> changed, Candidates &candidates) {
-    stale_ = unbounded_;
-#pragma omp parallel for schedule(static)
-    for (size_t v = 0; v < escaped.size(); ++v) {
-        const bool leaves = escaped[v] && &move != &bounds;
-        stale_[v] |= leaves || changed[v];
-        unbounded_[v] = leaves;
-    }
-    const MeshSubset stale(mesh_, incidence_, stale_);
+template <class Boxes> void BroadPhase::refit(const MeshSubset &subset, View<unsigned char> changed, const Boxes &boxes_of) {
     std::vector<int> points;
-    for (const int v : stale.vertices)
+    for (const int v : subset.vertices)
         if (point_of_[v] >= 0) points.push_back(point_of_[v]);
     for_trees([&](Bvh &tree, const auto &primitives, const auto &box_of) {
         tree.deactivate();
         if (primitives.empty()) return;
-        tree.refit(&tree == &edge_tree_    ? stale.edges
+        tree.refit(&tree == &edge_tree_    ? subset.edges
                    : &tree == &point_tree_ ? points
-                                           : stale.triangles,
+                                           : subset.triangles,
                    [&](int i) {
-                       SweptBox box = box_of(any_of(escaped, primitives[i]) ? move : bounds, i);
+                       SweptBox box = box_of(boxes_of(primitives[i]), i);
                        box.set_flags(any_of(changed, primitives[i]), any_of(mesh_.moves, primitives[i]));
                        return box;
                    });
     });
-    search_all(move, candidates);
-    const auto neither = [&](const auto &a, const auto &b) { return !any_of(escaped, a) && !any_of(escaped, b); };
-    std::erase_if(candidates.edge_edge, [&](const Pair &pair) { return neither(mesh_.edges[pair[0]], mesh_.edges[pair[1]]); });
-    std::erase_if(candidates.point_triangle,
-                  [&](const Pair &pair) { return neither(std::array{pair[0]}, mesh_.triangles[pair[1]]); });
 }
 
-void BroadPhase::search_all(const SweptBoxes &boxes, Candidates &candidates, const SweptBoxes *move) {
+std::vector<PrimitivePair> BroadPhase::find_changed(const SweptBoxes &boxes, View<unsigned char> changed) {
+    refit(MeshSubset(mesh_, incidence_, changed), changed, [&](const auto &) -> const SweptBoxes & { return boxes; });
+    return search_all(boxes);
+}
+
+std::vector<PrimitivePair> BroadPhase::find_escaped(const SweptBoxes &move, const SweptBoxes &bounds,
+                                                    View<unsigned char> escaped, View<unsigned char> changed) {
+    std::vector<unsigned char> either(changed.begin(), changed.end());
+    for (size_t v = 0; v < either.size(); ++v) either[v] |= escaped[v];
+    const MeshSubset subset(mesh_, incidence_, either);
+    refit(subset, changed,
+          [&](const auto &vertices) -> const SweptBoxes & { return any_of(escaped, vertices) ? move : bounds; });
+    std::vector<PrimitivePair> found = search_all(move);
+    refit(subset, changed, [&](const auto &) -> const SweptBoxes & { return bounds; });
+    std::erase_if(found, [&](const PrimitivePair &pair) {
+        return with_vertices(mesh_, pair,
+                             [&](const auto &a, const auto &b) { return !any_of(escaped, a) && !any_of(escaped, b); });
+    });
+    return found;
+}
+
+std::vector<PrimitivePair> BroadPhase::search_all(const SweptBoxes &boxes, const SweptBoxes *move) {
+    std::vector<PrimitivePair> all;
     search(edge_tree_, mesh_.edges, edge_tree_, mesh_.edges, boxes, move);
-    gather(mesh_.edges.size(), candidates.edge_edge);
-    candidates.point_triangle.clear();
-    if (points_.empty() || mesh_.triangles.empty()) return;
+    gather(mesh_.edges.size(), all);
+    if (points_.empty() || mesh_.triangles.empty()) return all;
     search(point_tree_, points_, triangle_tree_, mesh_.triangles, boxes, nullptr);
     for (Pairs &found : found_)
-        for (auto &pair : found) pair[0] = mesh_.points[pair[0]];
-    gather(mesh_.moves.size(), candidates.point_triangle);
+        for (PrimitivePair &pair : found) pair.primitive[0] = mesh_.points[pair.primitive[0]];
+    gather(mesh_.moves.size(), all);
+    return all;
 }
 
 template <class A, class B>
@@ -152,14 +149,18 @@ void BroadPhase::search(const Bvh &tree_a, const A &all_a, const Bvh &tree_b, co
     if (found_.size() < starts.size()) found_.resize(starts.size());
     const auto take = [&](const NodePair &slots, Pairs &found) {
         const auto [i, j] = slots.of;
+        const bool one_tree = &tree_a == &tree_b;
         int p = tree_a.primitive(i), q = tree_b.primitive(j);
+        if (one_tree && p > q) std::swap(p, q); // before its activation distance, whose last bits have an order
         const auto &a = all_a[p];
         const auto &b = all_b[q];
         if (share_vertex(a, b) || anchored(mesh_, a, b)) return;
-        const float less = excess(mesh_, a, b);
-        if (less > 0.0f && !overlap_at_one_time(tree_a.box(i), tree_b.box(j), less)) return;
-        if (&tree_a == &tree_b && p > q) std::swap(p, q);
-        found.push_back({p, q});
+        const double d_hat = activation_distance(mesh_, a, b);
+        if (mesh_.object[a[0]] == mesh_.object[b[0]]) { // boxes have the whole radii
+            const auto less = static_cast<float>(mean_radius(mesh_, a) + mean_radius(mesh_, b) - d_hat);
+            if (less > 0.0f && !overlap_at_one_time(tree_a.box(i), tree_b.box(j), less)) return;
+        }
+        found.push_back({{p, q}, one_tree, d_hat});
     };
 #pragma omp parallel
     {
@@ -176,17 +177,20 @@ void BroadPhase::search(const Bvh &tree_a, const A &all_a, const Bvh &tree_b, co
     }
 }
 
-// Sorts the pairs of all tasks: into bins by the first of a pair, which is below `firsts`, then within bins.
-void BroadPhase::gather(size_t firsts, Pairs &sorted) {
-    std::vector<int> bins(firsts + 1, 0);
+// Appends the pairs of all tasks, sorted: into bins by the first of a pair, which is below `firsts`, then within bins.
+void BroadPhase::gather(size_t firsts, Pairs &all) {
+    std::vector<size_t> bins(firsts + 1, 0);
     for (const Pairs &found : found_)
-        for (const auto &pair : found) ++bins[pair[0]];
-    std::exclusive_scan(bins.begin(), bins.end(), bins.begin(), 0);
-    sorted.resize(bins.back());
+        for (const PrimitivePair &pair : found) ++bins[pair.primitive[0]];
+    const size_t before_these = all.size();
+    std::exclusive_scan(bins.begin(), bins.end(), bins.begin(), before_these);
+    all.resize(bins.back());
     for (const Pairs &found : found_)
-        for (const auto &pair : found) sorted[bins[pair[0]]++] = pair; // bins[i] becomes the end of bin i
+        for (const PrimitivePair &pair : found) all[bins[pair.primitive[0]]++] = pair; // bins[i] becomes the end of bin i
 #pragma omp parallel for schedule(dynamic, 1024)
-    for (size_t i = 0; i < firsts; ++i) std::sort(sorted.begin() + (i == 0 ? 0 : bins[i - 1]), sorted.begin() + bins[i]);
+    for (size_t i = 0; i < firsts; ++i)
+        std::sort(all.begin() + ptrdiff_t(i == 0 ? before_these : bins[i - 1]), all.begin() + ptrdiff_t(bins[i]),
+                  [](const PrimitivePair &a, const PrimitivePair &b) { return a.primitive[1] < b.primitive[1]; });
 }
 
 } // namespace ringlet

@@ -3,7 +3,6 @@
 #include "ringlet/math/collect.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace ringlet {
 namespace {
@@ -21,7 +20,7 @@ std::array<Vec3, 3> enclosed(const Move &move, double max_path, int v) {
 std::vector<int> MotionBounds::outside(const Move &move, double max_path, double slack) const {
     return collect<int>(int(move.start.size()), [&](int v, std::vector<int> &vertices) {
         const std::array<Vec3, 3> corners = enclosed(move, max_path, v);
-        if (empty() || std::any_of(corners.begin(), corners.end(), [&](const Vec3 &x) { return leaves(v, x, slack); }))
+        if (std::any_of(corners.begin(), corners.end(), [&](const Vec3 &x) { return leaves(v, x, slack); }))
             vertices.push_back(v);
     });
 }
@@ -44,26 +43,22 @@ void MotionBounds::fit(const Move &move, const Fit &how, const std::vector<int> 
     boxes_.refit({low_, high_}, vertices);
 }
 
-void MotionBounds::find_escaped(const Move &move) {
-    const auto escapes = [&](int v) {
-        return leaves(v, move.start[v]) || leaves(v, move.end[v]) || (!move.apex.empty() && leaves(v, move.apex[v]));
-    };
-    bool any = false;
-#pragma omp parallel for schedule(static) reduction(|| : any)
-    for (int v = 0; v < int(escaped_.size()); ++v) {
-        escaped_[v] = empty() ? mesh_.moves[v] != 0 : escapes(v);
-        any = any || escaped_[v];
-    }
-    any_escaped_ = any;
+std::vector<unsigned char> MotionBounds::escaped(const Move &move) const {
+    std::vector<unsigned char> escaped(move.start.size());
+#pragma omp parallel for schedule(static)
+    for (int v = 0; v < int(escaped.size()); ++v)
+        escaped[v] = leaves(v, move.start[v]) || leaves(v, move.end[v]) || (!move.apex.empty() && leaves(v, move.apex[v]));
+    return escaped;
 }
 
-void MotionBounds::move_rigidly(View<Vec3> from, View<Vec3> to) {
-    const double half_side = 1.0 / std::sqrt(3.0); // of the cube in a ball of radius 1
+void MotionBounds::move_rigidly(const RigidMotion &motion, View<Vec3> from) {
+    const Vec3 turned = (motion.rotation.transpose() - Mat3::Identity()).cwiseAbs().rowwise().sum();
 #pragma omp parallel for schedule(static)
-    for (int v = 0; v < int(to.size()); ++v) {
-        const double half = half_side * std::min((from[v] - low_[v]).minCoeff(), (high_[v] - from[v]).minCoeff());
-        low_[v] = to[v].array() - half;
-        high_[v] = to[v].array() + half;
+    for (int v = 0; v < int(from.size()); ++v) {
+        const Vec3 below = from[v] - low_[v], above = high_[v] - from[v], to = motion(from[v]);
+        const Vec3 lost = turned * below.cwiseMax(above).maxCoeff();
+        low_[v] = to - below + lost;
+        high_[v] = to + above - lost;
     }
     boxes_.fit_static(low_, high_);
 }

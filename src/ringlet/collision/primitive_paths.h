@@ -65,7 +65,6 @@ public:
         const auto [i, j] = pair.primitive;
         return pair.edge_edge ? changed_edges_[i] || changed_edges_[j] : changed_vertices_[i] || changed_triangles_[j];
     }
-    View<unsigned char> changed_vertices() const { return changed_vertices_; }
 
 private:
     struct Path {            // small, since pairs access them in random order

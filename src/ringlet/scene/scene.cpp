@@ -66,7 +66,7 @@ void SceneData::exempt_coincident_pairs() {
         vertices.mesh.exempt.push_back(pair);
         with_vertices(vertices.mesh, pair, [&](const auto &a, const auto &b) { coincident.push_back({a[0], b[0]}); });
     }
-    configuration.pairs.clear();
+    configuration.candidates.clear();
 }
 
 bool SceneData::is_placed() const {
@@ -85,7 +85,7 @@ void SceneData::take_placed() {
     };
     take(state.positions, 0);
     for (size_t c = 0; c < cloths.size(); ++c) take(cloths[c]->state().positions, vertices.cloths[c]);
-    configuration.pairs.clear();
+    configuration.candidates.clear();
 }
 
 Scene::Scene(const StrandModel &model, StrandState &state, const std::vector<SceneCloth> &cloths,
@@ -122,13 +122,13 @@ void Scene::place() { data_->take_placed(); }
 std::vector<Contact> Scene::touching() {
     const SceneVertices &vertices = data_->vertices;
     Configuration &configuration = data_->configuration;
-    configuration.pairs.clear();
+    configuration.candidates.clear();
     ContactMaterial material = vertices.material;
     material.stiffness.assign(vertices.count(), 1.0);
     material.firm_stiffness = material.stiffness;
     ContactSet contacts; // without a past
     contacts.find(vertices.mesh, material, configuration.contact_pairs(), configuration.positions, configuration.positions);
-    configuration.pairs.clear();
+    configuration.candidates.clear();
     return contacts.contacts();
 }
 
@@ -141,7 +141,7 @@ void Scene::allow_penetration(int vertex, int body) {
     if (vertex < 0 || vertex >= data_->vertices.strand_vertices())
         throw std::invalid_argument("scene: only vertices of strands may penetrate a body");
     if (body < 0 || body >= int(data_->bodies.size())) throw std::invalid_argument("scene: there is no such body");
-    data_->configuration.pairs.clear();
+    data_->configuration.candidates.clear();
     data_->penetration.add(vertex, data_->bodies[body], data_->vertices.mesh);
 }
 
@@ -152,7 +152,7 @@ void Scene::record(bool on) { data_->configuration.record(on); }
 const std::vector<std::vector<Vec3>> &Scene::path() const { return data_->configuration.recorded(); }
 
 SceneMemory Scene::memory() const {
-    data_->configuration.pairs.clear(); // as in a scene that recalls it: then even what is counted is the same
+    data_->configuration.candidates.clear(); // as in a scene that recalls it: then even what is counted is the same
     const View<Vec3> all = positions();
     const ContactSet &contacts = data_->objective.contacts;
     return {data_->begun,

@@ -106,7 +106,7 @@ void move_to_initial_guess(SceneData &scene, const std::vector<unsigned char> &a
             (move.to[v] - now[v]).squaredNorm() < scene_settings::guess_rounding * scene_settings::guess_rounding)
             move.to[v] = now[v];
     const std::vector<Vec3> guess = move.to;
-    scene.configuration.limit(move, {.whole = false, .few = true}, report);
+    scene.configuration.limit(move, StrandLimit::near_impacts, Candidates::Serve::later_moves, report);
     refinement.add(ObjectMoves(scene.blocks, now, guess, move.to), tolerance);
     scene.configuration.commit(move.to);
     scene.blocks.scatter(scene.configuration.positions, x);
@@ -148,7 +148,7 @@ SceneReport take_step(SceneData &scene, const SceneInput &input, const SceneStep
     scene.objective.springs =
         scene.penetration.recover(scene.vertices.mesh, scene.configuration.positions, View<int>(scene.model.offsets),
                                   scene.stiffness.largest(), scene_settings::recovery_speed * step.dt);
-    if (scene.penetration.count() < inside) scene.configuration.pairs.clear(); // of pairs that were exempt
+    if (scene.penetration.count() < inside) scene.configuration.candidates.clear(); // of pairs that were exempt
 
     const std::vector<Vec3> targets = targets_on_arrival(scene, input.targets);
     for (const auto &block : scene.strands) block->configure(step);

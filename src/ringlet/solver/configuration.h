@@ -1,7 +1,7 @@
 // The configuration of a scene: where all vertices are, with the candidate pairs that move along with them.
 #pragma once
 
-#include "ringlet/ccd/motion_limiter.h"
+#include "ringlet/ccd/limit_move.h"
 #include "ringlet/geometry/rigid_motion.h"
 #include "ringlet/solver/report.h"
 #include "ringlet/solver/vertex_table.h"
@@ -10,12 +10,6 @@
 
 namespace ringlet {
 
-// A move of all dynamic vertices while prescribed ones stay.
-struct PlannedMove {
-    std::vector<Vec3> to;   // where it ends
-    std::vector<Vec3> apex; // the path is in the triangle of the start, this and the end; empty: it is straight
-};
-
 class Configuration {
 public:
     // `strands` and `cloths` say where each begins among the vertices, and the end; corrections spread along them.
@@ -23,23 +17,18 @@ public:
                   double strand_radius);
 
     std::vector<Vec3> positions;
-    PairCache pairs;
+    Candidates candidates;
+    MoveCandidates pairs; // of the last move
 
     // The pairs that are nearer than their activation distance.
     std::vector<ContactPair> contact_pairs();
 
     ConnectedMesh connected() const { return {table_.mesh, strands_, cloths_, &cloth_neighbours_}; }
 
-    // Shortens a move so that no pair comes closer than it may. Strands keep their shape and take a fraction of the whole move
-    // (`whole`), or may be limited near the pair alone where else they could hardly move. `lasts`: candidates serve later
-    // moves.
-    struct LimitSettings {
-        bool whole = true, lasts = true;
-        bool few = false; // vertices move: candidates are found for them alone
-    };
-    void limit(PlannedMove &move, const LimitSettings &settings, SceneReport &report);
+    // Shortens a move so that no pair comes closer than it may.
+    void limit(PlannedMove &move, StrandLimit strands, Candidates::Serve serve, SceneReport &report);
     // The same where some vertices of the last limited move end elsewhere.
-    void limit_again(PlannedMove &move, bool whole, View<unsigned char> changed, SceneReport &report);
+    void limit_again(PlannedMove &move, StrandLimit strands, View<unsigned char> changed, SceneReport &report);
 
     // Takes the last limited move, or any fraction of it.
     void commit(const std::vector<Vec3> &to);
@@ -54,8 +43,9 @@ public:
     const std::vector<std::vector<Vec3>> &recorded() const { return recorded_; }
 
 private:
-    void bound(const PlannedMove &move, bool lasts);
-    void limit(PlannedMove &move, bool whole, View<unsigned char> changed, SceneReport &report);
+    void enclose(const Move &move);
+    void find_candidates(); // where there are none
+    void limit_begun(PlannedMove &move, StrandLimit strands, SceneReport &report);
     void add_to_record();
 
     const VertexTable &table_;

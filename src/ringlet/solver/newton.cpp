@@ -38,8 +38,9 @@ SolverEffort Newton::minimise(View<Vec3> start, const NewtonSettings &settings, 
         const std::vector<double> longest = choose_path(x, stall.cautious(), path);
         // A strand that could hardly move is limited near the pair alone, so that the rest of it follows in the first
         // iteration. In extra ones a single pair could hold it for good. Between these its shape counts.
-        LimitedPath limited =
-            limit_path(objective_, configuration_, x, {number > 0 && !extra, last, stall.cautious()}, path, report);
+        const StrandLimit strands = number > 0 && !extra ? StrandLimit::whole : StrandLimit::near_impacts;
+        const auto serve = last ? Candidates::Serve::later_moves : Candidates::Serve::this_move;
+        LimitedPath limited = limit_path(objective_, configuration_, x, {serve, strands, stall.cautious()}, path, report);
         limited.moves.shorten(longest);
         finished = stopping.all_converged() && limited.moves.are_full();
 
@@ -118,7 +119,7 @@ void Newton::accept(PlannedMove move, const LineSearchResult &found, AlignedVect
         for (int v = 0; v < table_.dynamic_vertices; ++v)
             if (found.step[table_.mesh.object[v]] < 1.0) changed[v] = 1, move.to[v] = blocks.position(x, v);
         move.apex.clear();
-        configuration_.limit_again(move, true, changed, report);
+        configuration_.limit_again(move, StrandLimit::whole, changed, report);
     }
     configuration_.commit(move.to);
     blocks.scatter(configuration_.positions, x);

@@ -8,8 +8,8 @@
 namespace ringlet {
 
 struct PathLimits {
-    bool whole;                                // strands are limited as a whole, and not near an impact alone
-    bool lasts;                                // candidates serve later moves
+    Candidates::Serve serve;
+    StrandLimit strands;                       // of what has an impact on the shortened path, too
     const std::vector<unsigned char> &uniform; // per object: its cluster takes one fraction of the path
 };
 

@@ -8,33 +8,41 @@
 
 namespace ringlet {
 
-struct LimitMotionInput {
-    ConnectedMesh connected;
-    View<Vec3> start; // [m]
-    // Strands are only scaled as a whole; otherwise one that could hardly move is corrected near its impacts alone.
-    bool whole_strands = false;
-    // Continues the move that was limited last: vertices whose end differs since. Empty: a new move.
-    View<unsigned char> changed = {};
+// A move of all dynamic vertices while prescribed ones stay.
+struct PlannedMove {
+    std::vector<Vec3> to;   // where it ends [m]
+    std::vector<Vec3> apex; // the path is in the triangle of the start, this and the end; empty: it is straight [m]
 };
 
-// Changes `end` so that no pair has an impact while every vertex moves straight from `start` to `end`. A strand is scaled as a
-// whole, which keeps its shape, and both strands of an impact to the same fraction. Cloth is corrected locally.
-// The apexes of curved paths, if given, are scaled with `end`: until the move is committed an end may be updated to anywhere in
-// the triangle of start, end and apex.
-CcdReport limit_motion(const LimitMotionInput &input, PairCache &pairs, std::vector<Vec3> &end,
-                       std::vector<Vec3> *apex = nullptr);
+// How strands yield that have an impact.
+enum class StrandLimit {
+    whole,       // a strand keeps its shape and makes a fraction of its move
+    near_impacts // the same, but one that could hardly move is corrected near its impacts alone
+};
 
-// One move of limit_motion(). The strands of an impact are scaled to its time, and one that then hits a strand with a smaller
+struct MoveLimits {
+    ConnectedMesh connected;
+    View<Vec3> start; // [m]
+    StrandLimit strands = StrandLimit::near_impacts;
+};
+
+// Shortens a move, which `pairs` have begun or updated, so that no pair has an impact while every vertex goes straight to its
+// end. Both strands of an impact make the same fraction of their moves. Cloth is corrected near its impacts. Apexes are scaled
+// with the ends: until the move is committed an end may be updated to anywhere in the triangle of start, end and apex.
+CcdReport limit_move(const MoveLimits &limits, MoveCandidates &pairs, PlannedMove &move);
+
+// One call of limit_move(). The strands of an impact are scaled to its time, and one that then hits a strand with a smaller
 // fraction stops before that. Such chains are resolved within a round, event by event, the smallest fraction first. What was
 // corrected locally is checked in a further round. After some rounds strands with an impact rest, and two that rest have none.
-class MotionLimiter {
+class MoveLimiter {
 public:
-    // `pairs` has begun the move from `input.start` to `end`, which is changed, as is `apex`.
-    MotionLimiter(const LimitMotionInput &input, PairCache &pairs, std::vector<Vec3> &end, std::vector<Vec3> *apex);
+    // `pairs` has begun the move, which is changed.
+    MoveLimiter(const MoveLimits &limits, const MoveCandidates &pairs, PlannedMove &move);
 
-    // Resolves impacts among the vertices that the last round changed. Whether others may follow: events find those of strands
-    // with one another, and bodies stay.
-    bool resolve(const std::vector<Impact> &impacts);
+    // Resolves impacts among the vertices that the last round changed.
+    void resolve(const std::vector<Impact> &impacts);
+    // Whether impacts may be left: events find those of strands with one another, and bodies stay.
+    bool may_leave_impacts() const;
     const std::vector<unsigned char> &changed() const { return changed_; } // vertices, in the last round
 
 private:
@@ -65,11 +73,10 @@ private:
     void prefetch(View<CandidatePair *> pairs, size_t k) const;
     bool may_have_impact(const CandidatePair &pair) const;
 
-    const LimitMotionInput &input_;
-    const PairCache &pairs_;
+    const MoveLimits &limits_;
+    const MoveCandidates &pairs_;
     const CollisionMesh &mesh_;
-    std::vector<Vec3> &end_;
-    std::vector<Vec3> *apex_; // null: paths are straight
+    PlannedMove &move_;
     int strands_, round_ = 0;
     bool corrected_locally_ = false;          // in any round: what was known of impacts no longer holds
     std::vector<CandidatePair> transient_;    // as in the first round; later rounds change those of the cache

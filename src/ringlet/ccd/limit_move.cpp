@@ -1,4 +1,4 @@
-#include "ringlet/ccd/motion_limiter.h"
+#include "ringlet/ccd/limit_move.h"
 
 #include "ringlet/ccd/settings.h"
 
@@ -14,10 +14,10 @@ constexpr size_t prefetched_pairs = 6; // loaded ahead of the one that is tested
 
 } // namespace
 
-MotionLimiter::MotionLimiter(const LimitMotionInput &input, PairCache &pairs, std::vector<Vec3> &end, std::vector<Vec3> *apex)
-    : input_(input), pairs_(pairs), mesh_(input.connected.mesh), end_(end), apex_(apex),
-      strands_(int(input.connected.strands.size()) - 1), transient_(pairs.transient_pairs()), fraction_(strands_, 1.0),
-      changed_(end.size(), 0) {
+MoveLimiter::MoveLimiter(const MoveLimits &limits, const MoveCandidates &pairs, PlannedMove &move)
+    : limits_(limits), pairs_(pairs), mesh_(limits.connected.mesh), move_(move),
+      strands_(int(limits.connected.strands.size()) - 1), transient_(pairs.transient_pairs()), fraction_(strands_, 1.0),
+      changed_(move.to.size(), 0) {
     pairs_of_strand_ = {size_t(strands_), [&](const auto &add) {
                             const auto consider = [&](CandidatePair &pair) {
                                 const auto [a, b] = pair.object;
@@ -29,17 +29,17 @@ MotionLimiter::MotionLimiter(const LimitMotionInput &input, PairCache &pairs, st
 }
 
 // The strand of an edge; −1: it has none, or does not move.
-int MotionLimiter::strand_of(int v, int w) const {
+int MoveLimiter::strand_of(int v, int w) const {
     const bool moves = mesh_.moves[v] || mesh_.moves[w];
     return moves && mesh_.object[v] < strands_ ? mesh_.object[v] : -1;
 }
 
-std::array<int, 2> MotionLimiter::strands_of(const Impact &impact) const {
+std::array<int, 2> MoveLimiter::strands_of(const Impact &impact) const {
     const auto &[a0, a1, b0, b1] = impact.vertices;
     return {strand_of(a0, a1), strand_of(b1, b0)};
 }
 
-bool MotionLimiter::resolve(const std::vector<Impact> &impacts) {
+void MoveLimiter::resolve(const std::vector<Impact> &impacts) {
     for (const int v : changed_list_) changed_[v] = 0;
     changed_list_.clear();
     for (const Impact &impact : impacts) // is checked again: a local correction elsewhere may have left this impact unresolved
@@ -49,16 +49,20 @@ bool MotionLimiter::resolve(const std::vector<Impact> &impacts) {
     const std::vector<int> corrected = correct_locally(impacts);
     limit_strands(impacts, corrected);
     corrected_locally_ |= !corrected.empty();
-    const bool any_cloths = input_.connected.cloths.size() > 1;
-    return ++round_ > ccd::strand_rounds || corrected_locally_ || any_cloths || !pairs_.is_bounded();
+    ++round_;
+}
+
+bool MoveLimiter::may_leave_impacts() const {
+    const bool any_cloths = limits_.connected.cloths.size() > 1;
+    return round_ > ccd::strand_rounds || corrected_locally_ || any_cloths || pairs_.any_escaped();
 }
 
 // Corrects cloths, and strands that could hardly move, near their impacts. Returns these strands.
-std::vector<int> MotionLimiter::correct_locally(const std::vector<Impact> &impacts) {
-    const bool any_strands = !input_.whole_strands && round_ < ccd::local_strand_rounds;
-    if (!any_strands && input_.connected.cloths.size() <= 1) return {};
+std::vector<int> MoveLimiter::correct_locally(const std::vector<Impact> &impacts) {
+    const bool any_strands = limits_.strands == StrandLimit::near_impacts && round_ < ccd::local_strand_rounds;
+    if (!any_strands && limits_.connected.cloths.size() <= 1) return {};
     std::map<int, double> fractions; // strand → fraction of its present motion up to its first impact
-    std::vector<Correction> corrections(end_.size());
+    std::vector<Correction> corrections(move_.to.size());
     for (const Impact &impact : impacts) {
         const auto [a, b] = strands_of(impact);
         if (a >= 0 && b >= 0 && fraction_[a] != fraction_[b] && round_ < ccd::strand_rounds) continue;
@@ -73,7 +77,7 @@ std::vector<int> MotionLimiter::correct_locally(const std::vector<Impact> &impac
             corrections[v].weight = std::max(corrections[v].weight, 1.0 - fraction);
         }
     }
-    const View<int> offsets = input_.connected.strands;
+    const View<int> offsets = limits_.connected.strands;
     std::vector<int> corrected;
     for (const auto &[strand, fraction] : fractions)
         if (any_strands && fraction <= ccd::hardly_moves)
@@ -81,13 +85,13 @@ std::vector<int> MotionLimiter::correct_locally(const std::vector<Impact> &impac
         else
             std::fill(corrections.begin() + offsets[strand], corrections.begin() + offsets[strand + 1], Correction{});
     const StrainLimit limit{ccd::max_strain, round_ < ccd::local_cloth_rounds ? ccd::max_strain : 0.0};
-    spread_correction(input_.connected, input_.start, end_, limit, corrected, corrections);
+    spread_correction(limits_.connected, limits_.start, move_.to, limit, corrected, corrections);
     for (int v = 0; v < int(corrections.size()); ++v)
         if (corrections[v].weight > 0.0) scale_motion(v, 1.0 - corrections[v].weight);
     return corrected;
 }
 
-void MotionLimiter::limit_strands(const std::vector<Impact> &impacts, const std::vector<int> &corrected) {
+void MoveLimiter::limit_strands(const std::vector<Impact> &impacts, const std::vector<int> &corrected) {
     std::vector<Event> events; // a heap
     for (const Impact &impact : impacts) add_event(impact, events);
     const auto is_corrected = [&](int strand) { return std::binary_search(corrected.begin(), corrected.end(), strand); };
@@ -103,20 +107,20 @@ void MotionLimiter::limit_strands(const std::vector<Impact> &impacts, const std:
 }
 
 // Pairs of a strand lead all over memory: those to come are loaded while one is tested.
-void MotionLimiter::prefetch(View<CandidatePair *> pairs, size_t k) const {
+void MoveLimiter::prefetch(View<CandidatePair *> pairs, size_t k) const {
     if (k + 2 * prefetched_pairs < pairs.size()) __builtin_prefetch(pairs[k + 2 * prefetched_pairs]);
     if (k + prefetched_pairs >= pairs.size()) return;
     for (const int edge : pairs[k + prefetched_pairs]->primitive) {
         const int v = mesh_.edges[edge][0]; // the other vertex is next to it
-        __builtin_prefetch(&input_.start[v]);
-        __builtin_prefetch(&end_[v]);
+        __builtin_prefetch(&limits_.start[v]);
+        __builtin_prefetch(&move_.to[v]);
     }
 }
 
 // Adds the events of the impacts that this causes.
-void MotionLimiter::limit_strand(int strand, double fraction, std::vector<Event> &events) {
+void MoveLimiter::limit_strand(int strand, double fraction, std::vector<Event> &events) {
     if (fraction >= fraction_[strand]) return;
-    const View<int> offsets = input_.connected.strands;
+    const View<int> offsets = limits_.connected.strands;
     const double factor = fraction / fraction_[strand];
     for (int v = offsets[strand]; v < offsets[strand + 1]; ++v)
         if (mesh_.moves[v]) scale_motion(v, factor);
@@ -129,14 +133,14 @@ void MotionLimiter::limit_strand(int strand, double fraction, std::vector<Event>
         if (!may_have_impact(pair)) continue;
         const auto &a = mesh_.edges[pair.primitive[0]], &b = mesh_.edges[pair.primitive[1]];
         if (strand_of(a[0], a[1]) < 0 || strand_of(b[0], b[1]) < 0) continue;
-        const double toi = time_of_impact(mesh_, pair, input_.start, end_);
+        const double toi = time_of_impact(mesh_, pair, limits_.start, move_.to);
         if (toi <= 1.0) add_event({{a[0], a[1], b[0], b[1]}, toi}, events);
     }
 }
 
 // Whether the paths that are left to two strands are longer than a lower bound on their gap. Many are not, and no vertex is
 // needed.
-bool MotionLimiter::may_have_impact(const CandidatePair &pair) const {
+bool MoveLimiter::may_have_impact(const CandidatePair &pair) const {
     const auto [length_a, length_b] = pairs_.path_lengths(pair);
     const auto [a, b] = pair.object;
     const double approach = fraction_[a] / measured_[a] * length_a + fraction_[b] / measured_[b] * length_b;
@@ -145,7 +149,7 @@ bool MotionLimiter::may_have_impact(const CandidatePair &pair) const {
 
 // Of two strands with different fractions the one that goes farther stops just before it meets the other, and goes as far as
 // that one at least. With one fraction for both, the pair with the least room would stop all hair in contact with it.
-void MotionLimiter::add_event(const Impact &impact, std::vector<Event> &events) const {
+void MoveLimiter::add_event(const Impact &impact, std::vector<Event> &events) const {
     const auto [a, b] = strands_of(impact);
     if (a < 0 && b < 0) return;
     const double fraction_a = a >= 0 ? fraction_[a] : 1.0, fraction_b = b >= 0 ? fraction_[b] : 1.0;
@@ -160,41 +164,38 @@ void MotionLimiter::add_event(const Impact &impact, std::vector<Event> &events) 
     std::push_heap(events.begin(), events.end(), std::greater<>());
 }
 
-void MotionLimiter::scale_motion(int v, double factor) {
-    const Vec3 &start = input_.start[v];
-    end_[v] = start + factor * (end_[v] - start);
-    if (apex_ != nullptr) (*apex_)[v] = start + factor * ((*apex_)[v] - start);
+void MoveLimiter::scale_motion(int v, double factor) {
+    const Vec3 &start = limits_.start[v];
+    move_.to[v] = start + factor * (move_.to[v] - start);
+    if (!move_.apex.empty()) move_.apex[v] = start + factor * (move_.apex[v] - start);
     mark_changed(v);
 }
 
-CcdReport limit_motion(const LimitMotionInput &input, PairCache &pairs, std::vector<Vec3> &end, std::vector<Vec3> *apex) {
-    const auto &[mesh, strands, cloths, neighbours] = input.connected;
-    const int max_rounds = int(strands.size() + cloths.size()) + ccd::spare_rounds;
-    const auto move = [&] { return Move{input.start, end, apex != nullptr ? View<Vec3>(*apex) : View<Vec3>()}; };
+CcdReport limit_move(const MoveLimits &limits, MoveCandidates &pairs, PlannedMove &move) {
+    const CollisionMesh &mesh = limits.connected.mesh;
+    const int max_rounds = int(limits.connected.strands.size() + limits.connected.cloths.size()) + ccd::spare_rounds;
+    const auto path = [&] { return Move{limits.start, move.to, move.apex}; };
     CcdReport report;
-    std::vector<unsigned char> corrected(end.size(), 0);
-    std::optional<MotionLimiter> limiter;
-    if (input.changed.empty())
-        pairs.begin_move(move());
-    else
-        pairs.update_move(move(), input.changed);
+    std::vector<unsigned char> corrected(move.to.size(), 0);
+    std::optional<MoveLimiter> limiter;
     for (;; ++report.rounds) {
-        const std::vector<Impact> impacts = find_impacts(mesh, pairs.impact_candidates(), input.start, end);
+        const std::vector<Impact> impacts = find_impacts(mesh, pairs.impact_candidates(), limits.start, move.to);
         if (report.rounds == 0) report.candidates = pairs.size(), report.impacts = int(impacts.size());
         if (impacts.empty()) break;
         mark_vertices(mesh, impacts, corrected);
         if (report.rounds >= max_rounds) {
-            report.fraction = truncate_before_first(impacts, input.start, end);
-            pairs.begin_move(move());
+            report.fraction = truncate_before_first(impacts, limits.start, move.to);
+            pairs.shorten(path(), std::vector<unsigned char>(move.to.size(), 1));
             break;
         }
-        if (!limiter) limiter.emplace(input, pairs, end, apex);
-        if (!limiter->resolve(impacts)) {
-            pairs.defer_update(limiter->changed());
+        if (!limiter) limiter.emplace(limits, pairs, move);
+        limiter->resolve(impacts);
+        if (!limiter->may_leave_impacts()) {
+            pairs.shorten(path(), limiter->changed());
             ++report.rounds;
             break;
         }
-        pairs.update_move(move(), limiter->changed());
+        pairs.update(path(), limiter->changed());
     }
     report.corrected_vertices = int(std::count(corrected.begin(), corrected.end(), 1));
     return report;

@@ -5,7 +5,7 @@
 
 using namespace ringlet;
 
-BOOST_AUTO_TEST_SUITE(motion_limiter)
+BOOST_AUTO_TEST_SUITE(move_limits)
 
 BOOST_AUTO_TEST_CASE(a_limited_move_keeps_every_minimum_separation) {
     int violations = 0;
@@ -39,22 +39,22 @@ BOOST_AUTO_TEST_CASE(strands_that_keep_their_shape_have_no_impact_after_one_roun
     for (unsigned seed = 0; seed < 200; ++seed) {
         const Crowd crowd(60, 0.02, 0.01, seed, 30);
         std::vector<Vec3> limited;
-        const CcdReport bounded = crowd.limit(limited, true, 0.1);
+        const CcdReport bounded = crowd.limit(limited, StrandLimit::whole, 0.1);
         BOOST_TEST(bounded.rounds == 1);
         BOOST_TEST(!crowd.has_impacts(limited), "crowd " << seed);
-        violations += bounded.impacts + crowd.limit(limited, true).impacts;
+        violations += bounded.impacts + crowd.limit(limited, StrandLimit::whole).impacts;
         BOOST_TEST(!crowd.has_impacts(limited), "crowd " << seed << ", where vertices escape their bounds");
     }
     BOOST_TEST(violations > 10000);
 }
 
 BOOST_AUTO_TEST_CASE(strands_that_are_shortened_further_have_no_impact_either) {
-    for (const bool whole : {false, true}) {
+    for (const StrandLimit strands : {StrandLimit::near_impacts, StrandLimit::whole}) {
         int violations = 0;
         for (unsigned seed = 0; seed < 50; ++seed) {
             const Crowd crowd(60, 0.02, 0.01, seed, 30);
             std::vector<Vec3> limited;
-            violations += crowd.limit_and_shorten(limited, whole).impacts;
+            violations += crowd.limit_and_shorten(limited, strands).impacts;
             BOOST_TEST(!crowd.has_impacts(limited), "crowd " << seed);
         }
         BOOST_TEST(violations > 100);
