@@ -31,9 +31,9 @@ cpp_tests() {
 pytests() { OMP_NUM_THREADS=1 $bin/python -m pytest -n 2 --dist worksteal --durations 8 "$@"; }
 
 step "C++ tests" cpp_tests
-# At the lowest priority, beside all others: these leave a processor idle for about a quarter of the time.
-step "lints" nice -n 19 tools/lint.sh &
-step "documents" nice -n 19 tools/docs.sh &
+# Beside the Python tests: at a lower priority they would end last, each on one processor.
+step "lints" tools/lint.sh &
+step "documents" tools/docs.sh &
 step "Python tests" pytests tests/python
 step "physics tests" pytests tests/physics
 step "browser tests" pytests -rs tests/browser # in headless Chromium; where there is none they are skipped, and say so
