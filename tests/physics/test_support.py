@@ -180,13 +180,14 @@ def test_support_forces_are_refused_after_the_first_step():
         fallen(1).set_initial_forces(np.zeros((0, 4)), np.zeros((0, 3)))
 
 
-def test_sixty_locks_in_contact_stay_as_groomed():
-    """Long hair for two seconds: no vertex drifts by more than the radius of a hair."""
-    style = make_style("down", 60, HEAD, "scalp")
+@pytest.mark.parametrize(("name", "locks", "seconds"), [("down", 60, 2.0), ("long 3B", 100, 1.0)])
+def test_locks_in_contact_stay_as_groomed(name, locks, seconds):
+    """Long hair: no vertex drifts by more than the radius of a hair."""
+    style = make_style(name, locks, HEAD, "scalp")
     shot, head = style.shot("equilibrium"), style.head(np.zeros(1), FPS)
     made = equilibrium(shot, style.groom, obstacles=[head])
     assert np.linalg.norm(made.support, axis=1).max() > 1e-6  # some locks are supported
-    *_, last = style.at_rest(shot, to_curves(made, shot), 2.0)
+    *_, last = style.at_rest(shot, to_curves(made, shot), seconds)
     assert sag(last, style.groom.locks.points) < shot.strands.radius
 
 
@@ -198,6 +199,16 @@ def test_a_tip_supports_nothing():
         for upper in (above, above * [1, 1, 0] + np.linspace(-0.06, 0, 30)[:, None] * [0, 0, 1])
     )
     assert ends_there == 0 < carried
+
+
+def test_a_contact_that_hardly_overlaps_supports_nothing():
+    """It would have to sink in before it carries, and what it carries would fall until then."""
+    below, above = crossed()
+    hardly, enough = (
+        np.abs(support_forces(*scene(below, above + [0, rise * REACH, 0], more=SOFT), [])).max()
+        for rise in (0.03, 0.01)  # to overlaps of 0.02 and 0.04
+    )
+    assert hardly == 0 < enough
 
 
 RIDGE = 0.02 * np.array([[0, 0, -1], [0, 0, 1], [1, -1, -1], [1, -1, 1], [-1, -1, -1], [-1, -1, 1.0]])

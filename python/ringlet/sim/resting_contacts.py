@@ -21,6 +21,7 @@ from ringlet.sim.strands import Strands
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
+LEAST_OVERLAP = 0.03  # of the distance of contact; a pair that overlaps less has to sink in before it carries a lock
 REGULARISATION = 1e-9  # of the least squares: of contacts that act on the same vertices alike, the smallest forces
 
 
@@ -49,7 +50,8 @@ def resting_contacts(
 ) -> RestingContacts:
     """The contacts of locks as groomed, as their scene has them: of two locks the nearest, and of each vertex and body.
 
-    A tip carries no other lock, which would slide off, and a vertex that begins inside a body is not carried by it.
+    A tip carries no other lock, which would slide off, and a vertex that begins inside a body is not carried by it. Nor
+    does a pair carry that overlaps by less than ``LEAST_OVERLAP``.
     """
     surfaces = [np.asarray(one.mesh.points, np.float64) for one in obstacles]
     bodies = [
@@ -70,10 +72,11 @@ def resting_contacts(
         on_it = np.flatnonzero((body == k + 1) & carries)
         carries[on_it] = penetration_depths(at[main[on_it]], obstacles[k].mesh.triangles, surface) == 0.0
 
+    gap = np.linalg.norm(np.einsum("kv,kvi->ki", weights, at[vertices]), axis=1)
+    carries &= gap <= (1.0 - LEAST_OVERLAP) * values[:, 7]
     two = np.where(body[:, None] == 0, lock, np.c_[main, count + body])  # what touches: two locks, or vertex and body
     chosen = np.flatnonzero(carries)
-    gap = np.linalg.norm(np.einsum("kv,kvi->ki", weights[chosen], at[vertices[chosen]]), axis=1)
-    by_gap = chosen[np.argsort(gap, kind="stable")]
+    by_gap = chosen[np.argsort(gap[chosen], kind="stable")]
     _, first = np.unique(two[by_gap], axis=0, return_index=True)
     nearest = by_gap[first]
     normal = values[nearest, 4:7]
