@@ -54,7 +54,7 @@ def run(
     )
     hair_change = np.stack(measure(simulated, points)) / np.stack(before)
     relative_change = np.delete(hair_change / guide_change, np.s_[::PER_LOCK], axis=1)
-    beside = {
+    of_guide = {
         name: float(np.percentile(np.abs(kept - 1.0), 90))
         for name, kept in zip(("radius", "bend", "length"), relative_change, strict=True)
     }
@@ -70,7 +70,7 @@ def run(
             "bend_change_90_percent": float(np.percentile(np.abs(after[1] / before[1] - 1.0), 90)),
             "length_change_90_percent": float(np.percentile(np.abs(after[2] / before[2] - 1.0), 90)),
         }
-    methods[CARRIED]["beside_guide_90_percent"] = beside
+    methods[CARRIED]["change_relative_to_guide_90_percent"] = of_guide
     return clock.result(
         "warp",
         {"locks": locks, "points": points, "frames": frames, "nearest": nearest, "bend_scale": bend_scale},

@@ -39,7 +39,8 @@ def motion(
 
     bounce: frequency along the lock; settle: time until a bounce has gone to a twentieth; sag: how much longer a lock
     hangs than it is groomed; swing: frequency sideways. Each is what the steps of the shot show of a lock that touches
-    nothing; beside it is the lock by itself. With a CACHE it says what came out, and how far coils open and close.
+    nothing; the column after it has the lock by itself. With a CACHE it says what came out, and how far coils open and
+    close.
 
     Examples: ringlet motion nod.shot.toml --plot motion.png · ringlet motion nod.shot.toml cache.usdc
     """

@@ -22,9 +22,9 @@ def columns(motion: MotionWords) -> list[str]:
     """Columns of the table: percentiles over the locks of a group, and medians of what was asked and of the locks by
     themselves."""
     asked, found = (any(getattr(word, kind).size for word in motion.words) for kind in OPTIONAL)
-    beside = ["asked"] if asked else []
+    before = ["asked"] if asked else []
     after = [f"found, {name}" for name in PERCENTILES] if found else []
-    return ["group", "word", *beside, *PERCENTILES, "by itself", *after]
+    return ["group", "word", *before, *PERCENTILES, "by itself", *after]
 
 
 def rows(motion: MotionWords) -> list[list[str]]:

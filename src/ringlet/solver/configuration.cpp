@@ -12,15 +12,13 @@ Configuration::Configuration(const VertexTable &table, View<int> strands, View<i
       cloths_(cloths), cloth_neighbours_(neighbours(table.mesh, cloths.front(), cloths.back())), strand_radius_(strand_radius) {
 }
 
-void Configuration::enclose(const Move &move) {
-    candidates.enclose(move, {solver_settings::bound_margin * strand_radius_, solver_settings::max_bound_length});
+void Configuration::begin(const Move &move, Candidates::Serve serve) {
+    candidates.enclose(move, {solver_settings::bound_margin * strand_radius_, solver_settings::max_bound_length}, serve);
+    pairs.begin(move);
 }
 
 void Configuration::find_candidates() {
-    if (!candidates.empty()) return;
-    const Move rest{positions, positions};
-    enclose(rest);
-    pairs.begin(rest);
+    if (candidates.empty()) begin({positions, positions}, Candidates::Serve::later_moves);
 }
 
 std::vector<ContactPair> Configuration::contact_pairs() {
@@ -33,9 +31,7 @@ void Configuration::limit(PlannedMove &move, StrandLimit strands, Candidates::Se
         std::equal(move.apex.begin(), move.apex.end(), positions.begin()))
         return; // it stays
     const Stopwatch watch(report.time_filter);
-    const Move path{positions, move.to, move.apex};
-    candidates.enclose(path, {solver_settings::bound_margin * strand_radius_, solver_settings::max_bound_length}, serve);
-    pairs.begin(path);
+    begin({positions, move.to, move.apex}, serve);
     limit_begun(move, strands, report);
 }
 

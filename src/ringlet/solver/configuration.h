@@ -43,7 +43,7 @@ public:
     const std::vector<std::vector<Vec3>> &recorded() const { return recorded_; }
 
 private:
-    void enclose(const Move &move);
+    void begin(const Move &move, Candidates::Serve serve);
     void find_candidates(); // where there are none
     void limit_begun(PlannedMove &move, StrandLimit strands, SceneReport &report);
     void add_to_record();
