@@ -25,7 +25,7 @@ from ringlet.data.curves import Curves
 Array = NDArray[np.float64]
 
 ORDERS = 4  # polynomials of each kind of load
-AT_ONCE = 1 << 15  # vertices whose motions are in memory at once
+AT_ONCE = 1 << 11  # vertices whose motions are in memory at once
 STANDS = 1e-9  # least stiffness of a lock that stays in place, relative to its largest
 
 
@@ -169,12 +169,12 @@ class _Rods:
 
         def work(times: Array) -> Array:
             """The work of each load on the strains of each, these times a factor."""
-            of_corners = np.einsum("lv,lvai,lvbi->lab", times, moment, corners)
-            return of_corners + np.einsum("lv,lva,lvb->lab", times, self._pull(tension), edges)
+            of_edges = _products(times[..., None, None] * self._pull(tension)[..., None], edges[..., None])
+            return _products(times[..., None, None] * moment, corners) + of_edges
 
         flexibility = work(np.where(self.pinned, np.nan, 1.0)[:, None] * np.ones_like(self.mass))
         weight = self._geometric_stiffness(*self._carried(self.mass[..., None, None] * gravity), turns)
-        drag, inertia = (np.einsum("lv,lvai,lvbi->lab", of, moved, moved) for of in (self.drag, self.mass))
+        drag, inertia = (_products(of[..., None, None] * moved, moved) for of in (self.drag, self.mass))
         return Modes(flexibility, weight, work(self.damping), drag, inertia)
 
     def _carried(self, forces: Array) -> tuple[Array, Array]:
@@ -199,11 +199,16 @@ class _Rods:
         """
         n, m = tension[:, :, 0], moment[:, :, 0]
         before = np.concatenate([np.zeros_like(turns[:, :1]), turns[:, :-1]], axis=1)
-        of_load, of_edge = (np.einsum("lvai,lvi->lva", turns, of) for of in (n, self.edges))
-        stiffness = np.einsum("lv,lvai,lvbi->lab", np.einsum("lvi,lvi->lv", n, self.edges), turns, turns)
-        stiffness -= np.einsum("lva,lvb->lab", of_load, of_edge)
-        stiffness -= np.einsum("lvai,lvbi->lab", np.cross(m[:, :, None], before), turns)
+        pulled = np.einsum("lvi,lvi->lv", n, self.edges)[..., None, None] * turns
+        along = np.einsum("lvai,lvi->lva", turns, n)[..., None] * self.edges[:, :, None]
+        stiffness = _products(pulled - along - np.cross(m[:, :, None], before), turns)
         return 0.5 * (stiffness + stiffness.transpose(0, 2, 1))
+
+
+def _products(left: Array, right: Array) -> Array:
+    """The sum over vertices of the products of vectors, shape (count, left, right)."""
+    rows, columns = (of.transpose(0, 2, 1, 3).reshape(len(of), of.shape[2], -1) for of in (left, right))
+    return rows @ columns.transpose(0, 2, 1)
 
 
 def _beyond(of_vertices: Array) -> Array:
