@@ -84,14 +84,14 @@ def test_locks_of_the_stiffness_and_damping_found_show_the_words():
     """Under a weight that hardly changes their shape."""
     light, wanted = (0.0, -0.01, 0.0), (5.0, 0.7)
     _, hanging = hung("3B", light, damping=1e-3)
-    stiffer, damping = hanging.material(FILM, *wanted)
+    stiffer, damping = hanging.material(FILM, {"bounce": wanted[0], "settle": wanted[1]})
     _, found = hung("3B", light, bend_scale=float(stiffer[0]), damping=1e-3 * float(damping[0]))
     words = found.words(FILM)
     assert (words.bounce[0], words.settle[0]) == pytest.approx(wanted, rel=2e-3)
-    stiffer, kept = hanging.material(FILM, wanted[0])
+    stiffer, kept = hanging.material(FILM, {"bounce": wanted[0]})
     _, found = hung("3B", light, bend_scale=float(stiffer[0]), damping=1e-3)
     assert found.words(FILM).bounce[0] == pytest.approx(wanted[0], rel=2e-3)
-    unchanged, damping = hanging.material(FILM, None, wanted[1])
+    unchanged, damping = hanging.material(FILM, {"settle": wanted[1]})
     _, found = hung("3B", light, damping=1e-3 * float(damping[0]))
     assert found.words(FILM).settle[0] == pytest.approx(wanted[1], rel=2e-3)
     assert kept[0] == unchanged[0] == 1.0
@@ -99,10 +99,10 @@ def test_locks_of_the_stiffness_and_damping_found_show_the_words():
 
 def test_words_that_cannot_be_met_have_no_material_or_no_damping():
     """Weight alone bounces a wavy lock faster, and the steps alone settle it sooner."""
-    assert np.isnan(hung("2A")[1].material(FILM, 2.0)[0]).all()
-    _, hanging = hung("3B")
-    assert hanging.material(Stepping(1 / 24), 3.5, 0.5)[1] == 0.0
-    assert hanging.material(Stepping(1 / 24, "bdf2"), 3.5, 0.5)[1] > 0.0
+    assert np.isnan(hung("2A")[1].material(FILM, {"bounce": 2.0})[0]).all()
+    (_, hanging), wanted = hung("3B"), {"bounce": 3.5, "settle": 0.5}
+    assert hanging.material(Stepping(1 / 24), wanted)[1] == 0.0
+    assert hanging.material(Stepping(1 / 24, "bdf2"), wanted)[1] > 0.0
 
 
 def test_damping_that_varies_along_a_lock_acts_by_its_strains():

@@ -80,6 +80,49 @@ def test_one_word_leaves_the_other_to_the_material():
     assert settle.bounce[0] == pytest.approx(free.bounce[0], rel=0.05)
 
 
+def test_sag_and_swing_decide_the_stiffness_in_place_of_bounce():
+    sag = shown(shot(BDF2 + "[motion]\nsag = 0.1\n"), groom("3A", "3B", "3C"))
+    assert sag.sag == pytest.approx(np.full(3, 0.1), rel=0.01)
+    swing = shown(shot(BDF2 + "[motion]\nswing = 2.5\nsettle = 0.4\n"), groom("3B", "3C"))
+    assert swing.swing == pytest.approx(np.full(2, 2.5), rel=0.02)
+    assert swing.settle == pytest.approx(np.full(2, 0.4), rel=0.02)
+
+
+@pytest.mark.parametrize("rest", ["", "[rest]\nmode = 'equilibrium'\n"])
+def test_a_word_of_hair_is_a_part_of_what_each_lock_has_by_itself(rest):
+    made, fine = groom("3B", "3C"), f"{BDF2.replace('= 2', '= 16', 1)}{rest}"
+    own = shown(shot(fine), made)
+    words = shown(shot(f"{fine}[motion]\nbounce = {{ value = 1.2, of_hair = true }}\n"), made)
+    assert words.bounce == pytest.approx(1.2 * own.bounce, rel=0.02)
+    assert own.bounce[1] > 1.5 * own.bounce[0]
+
+
+def test_weight_is_mass_without_stiffness():
+    made = groom("3B")
+    light, heavy = (make_strands(shot(words), made) for words in ("", "[motion]\nweight = 2\n"))
+    assert heavy.masses == pytest.approx(2.0 * light.masses)
+    for one, other in zip(heavy.stiffness, light.stiffness, strict=True):
+        assert one == pytest.approx(other)
+    hung = shown(shot(f"{BDF2}[motion]\nweight = 2\n"), made), shown(shot(BDF2), made)
+    assert hung[0].sag > 1.4 * hung[1].sag and hung[0].bounce < hung[1].bounce
+    asked = shown(shot(f"{BDF2}[motion]\nweight = 2\nbounce = 5\n"), made)
+    assert asked.bounce == pytest.approx([5.0], rel=0.01)
+
+
+def test_beads_weigh_at_the_tip():
+    beads = "[motion]\nweight = { value = 1, ramp = [[0, 1], [0.9, 1], [1, 10]] }\n"
+    plain, beaded = (make_strands(shot(words), groom("3B")).masses for words in ("", beads))
+    middle = len(plain) // 2
+    assert beaded[:middle] == pytest.approx(plain[:middle]) and beaded[-1] > 5 * plain[-1]
+    with pytest.raises(UserError, match=r"motion.weight is .* on lock 0; must be at least 0.01"):
+        make_strands(shot("[motion]\nweight = { ramp = [[0, 1], [1, 0]] }\n"), groom("3B"))
+
+
+def test_air_settles_a_bounce():
+    calm, thick = (shown(shot(f"{BDF2}[motion]\nair = {air}\n"), groom("3B")).settle for air in (0, 20))
+    assert thick < 0.6 * calm
+
+
 def test_words_differ_from_lock_to_lock_by_chance_and_by_id():
     made = groom("3B", "3B", "3B")
     varied = f"[motion]\nbounce = {{ value = 4, vary = 0.3, lock = {{ {made.locks.ids[2]} = 5 }} }}\n"
@@ -98,9 +141,13 @@ def test_locks_that_cannot_move_as_asked_keep_their_material():
     [
         ("[strands]\nbend_scale = 2\n[motion]\nbounce = 3\n", "bounce, which is given instead of strands.bend_scale"),
         ("[strands]\ndamping = 1\n[motion]\nsettle = 3\n", "settle, which is given instead of strands.damping"),
+        ("[strands]\nbend_scale = 2\n[motion]\nsag = 0.1\n", "sag, which is given instead of strands.bend_scale"),
+        ("[motion]\nbounce = 3\nsag = 0.1\n", "motion.sag is 0.1, but bounce is 3, and both say how stiff"),
+        ("[motion]\nsag = 0.1\nswing = 2\n", "motion.swing is 2, but sag is 0.1, and both say how stiff"),
+        ("[motion]\nsag = 0.1\n[rest]\nmode = 'equilibrium'\n", "hang as groomed, but motion.sag is 0.1; take that"),
     ],
 )
-def test_a_word_and_the_material_that_it_replaces_are_refused(text, part):
+def test_words_that_contradict_are_refused(text, part):
     with pytest.raises(UserError, match=part):
         shot(text)
 
@@ -124,6 +171,9 @@ def test_a_rest_shape_is_stale_once_the_words_change():
         EQUILIBRIUM + WORDS.replace("3.5", "3"),
         EQUILIBRIUM,
         (EQUILIBRIUM + WORDS).replace("= 2\nn", "= 3\nn"),
+        EQUILIBRIUM + WORDS.replace("3.5", "{ value = 3.5, of_hair = true }"),
+        f"{EQUILIBRIUM}{WORDS}weight = 1.5\n",
+        f"{EQUILIBRIUM}{WORDS}air = 2\n",
     ):
         with pytest.raises(UserError, match="stale"):
             check_current(stored, dependencies(scene), shot(other), made, Path("rest"), allow_stale=False)

@@ -264,6 +264,12 @@ FILES = [
     Advice("has {}, which is given instead of strands.{}; take one of them away", in_order(changed(SHOT,
         ("preroll = 0", "preroll = 0\n[strands]\nbend_scale = 2\n[motion]\nbounce = 3")), line(f"motion {SHOT}")),
         in_order(changed(SHOT, ("bend_scale = 2", "")), line(f"motion {SHOT}"))),
+    Advice("is {}, but {} is {}, and both say how stiff locks are; take one of them away", in_order(changed(SHOT,
+        ("preroll = 0", "preroll = 0\n[motion]\nbounce = 3\nsag = 0.1")), line(f"motion {SHOT}")),
+        in_order(changed(SHOT, ("bounce = 3", "")), line(f"motion {SHOT}"))),
+    Advice("in which locks hang as groomed, but motion.sag is {}; take that away, or set rest.mode", in_order(changed(
+        SHOT, ("preroll = 0", "preroll = 0\nrest.mode = 'equilibrium'\n[motion]\nsag = 0.1")),
+        line(f"motion {SHOT}")), in_order(changed(SHOT, ("'equilibrium'", "'none'")), line(f"motion {SHOT}"))),
     Advice("steps a frame settles it in {} s at most; lower it, or set", in_order(changed(SHOT, ("preroll = 0",
         "preroll = 0\n[motion]\nbounce = 11")), line(f"motion {SHOT}")), in_order(changed(SHOT, ("[motion]",
         '[solver]\nintegrator = "bdf2"\nsubsteps = 2\n[motion]')), line(f"motion {SHOT}"))),

@@ -2,10 +2,12 @@
 
 from ringlet.motion.coils import CoilLengths, SeenMotion, seen_motion
 from ringlet.motion.modes import modes_of
+from ringlet.motion.search import find_stiffness
 from ringlet.motion.stepping import Integrator, Stepping, advised_steps
-from ringlet.motion.words import HangingLocks, Words
+from ringlet.motion.words import STIFFNESS, HangingLocks, Words
 
 __all__ = [
+    "STIFFNESS",
     "CoilLengths",
     "HangingLocks",
     "Integrator",
@@ -13,6 +15,7 @@ __all__ = [
     "Stepping",
     "Words",
     "advised_steps",
+    "find_stiffness",
     "modes_of",
     "seen_motion",
 ]

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ringlet.motion.modes import Mode, Modes
+from ringlet.motion.search import find_stiffness
 from ringlet.motion.stepping import Stepping, damped_exponent, shown_by_itself
 
 Array = NDArray[np.float64]
-Wanted = Array | float | None
+Wanted = Mapping[str, Array | float]  # words by name, for each lock or for all; of STIFFNESS one at most
 
-SOFTEST, STIFFEST = 1e-4, 1e6  # factors on the stiffness between which words are sought
+STIFFNESS = {"bounce", "sag", "swing"}  # words that a lock shows by its stiffness
+
 HALVINGS = 40
-MET = 0.05  # deviation from a word that counts as met, relative to it
 
 
 @dataclass
@@ -53,34 +54,46 @@ class HangingLocks:
         shown = steps.shown if steps else shown_by_itself
         return Words(*shown(bounce), self.sag, shown(swing)[0])
 
-    def material(self, steps: Stepping, bounce: Wanted, settle: Wanted = None) -> tuple[Array, Array]:
-        """Factors on the stiffness against bend and twist, and on the damping, with which the steps of a shot show a
-        bounce [Hz] and a time to settle [s]; shapes (count,), NaN where none do.
+    def material(self, steps: Stepping, wanted: Wanted) -> tuple[Array, Array]:
+        """Factors on the stiffness against bend and twist, and on the damping, with which the steps of a shot show
+        some words; shapes (count,), NaN where none do.
 
-        A word that is None leaves its factor at 1. Where steps and air alone settle a bounce sooner, the damping is 0.
-        The locks are to hang in the same shape however stiff they are, as with a rest shape of equilibrium.
+        Where steps and air alone settle a bounce sooner, the damping is 0. The locks are to hang in the same shape
+        however stiff they are, as with a rest shape of equilibrium; there is no ``sag`` then.
         """
-        if bounce is None:
-            return np.ones(len(self.sag)), self._damped(steps, settle)
-        if settle is None:
-            stiffer = self._stiffer(lambda mode: self._shown(steps, mode), bounce)
-            return stiffer, np.ones_like(stiffer)
-        wanted = steps.wanted(bounce, settle)
-        stiffer = self._stiffer(lambda mode: np.sqrt(mode.elastic + mode.weight), np.abs(wanted))
-        return stiffer, self._damping(self.modes.bounce(stiffer), wanted)
+        stiffer = np.ones(len(self.sag))
+        if STIFFNESS & wanted.keys():
+            logarithm, met = find_stiffness(
+                lambda which, at: self.excess(steps, wanted, _of_all(which, np.exp(at)))[which], np.log(stiffer)
+            )
+            stiffer = np.where(met, np.exp(logarithm), np.nan)
+        return stiffer, self.damping(steps, wanted, stiffer)
 
-    def nearer_material(self, steps: Stepping, bounce: Wanted, settle: Wanted = None) -> tuple[Array, Array]:
-        """The same factors where the shape in which locks hang depends on them: once the first is 1, both are found.
+    def excess(self, steps: Stepping, wanted: Wanted, stiffer: Array | float = 1.0) -> Array:
+        """By how much locks are too stiff for a word, shape (count,): it grows as the logarithm of stiffness at most.
 
-        In between it is one that brings the bounce nearer, as its square grows with the stiffness at most.
+        It is the logarithm of the square of their frequency relative to that of the word, or of the sag of the word
+        relative to theirs. NaN where a lock does not stay in place, infinite where it does not sag.
         """
-        mode = self.modes.bounce()
-        if bounce is None:
-            return np.ones(len(self.sag)), self._damped(steps, settle)
-        if settle is None:
-            return (bounce / self._shown(steps, mode)) ** 2, np.ones(len(self.sag))
-        wanted = steps.wanted(bounce, settle)
-        return np.abs(wanted) ** 2 / (mode.elastic + mode.weight), self._damping(mode, wanted)
+        with np.errstate(divide="ignore"):
+            if "sag" in wanted:
+                return np.where(self.sag > 0.0, np.log(wanted["sag"]) - np.log(np.maximum(self.sag, 0.0)), np.inf)
+            if "swing" in wanted:
+                return 2.0 * np.log(self._shown(steps, self.modes.swing(stiffer)) / wanted["swing"])
+            mode = self.modes.bounce(stiffer)
+            if "settle" in wanted:
+                exponent = steps.wanted(wanted["bounce"], wanted["settle"])
+                return np.log((mode.elastic + mode.weight) / np.abs(exponent) ** 2)
+            return 2.0 * np.log(self._shown(steps, mode) / wanted["bounce"])
+
+    def damping(self, steps: Stepping, wanted: Wanted, stiffer: Array | float = 1.0) -> Array:
+        """The factor on the damping of locks that are so many times stiffer, as in ``material``."""
+        if "settle" not in wanted:
+            return np.ones(len(self.sag))
+        mode = self.modes.bounce(stiffer)
+        if "bounce" not in wanted:
+            return self._damped(steps, mode, wanted["settle"])
+        return self._damping(mode, steps.wanted(wanted["bounce"], wanted["settle"]))
 
     def _damping(self, mode: Mode, wanted: NDArray[np.complex128]) -> Array:
         """The factor on the damping of a mode that has a wanted exponent [1/s]."""
@@ -92,11 +105,8 @@ class HangingLocks:
         too_stiff = mode.damping**2 > 2.0 * (mode.elastic + mode.weight)
         return np.where(too_stiff, np.inf, steps.shown(self._exponent(mode))[0])
 
-    def _damped(self, steps: Stepping, settle: Wanted) -> Array:
-        """The factor on the damping, up to critical, with which the steps show a time to settle [s]; 1 for None."""
-        if settle is None:
-            return np.ones(len(self.sag))
-        mode = self.modes.bounce()
+    def _damped(self, steps: Stepping, mode: Mode, settle: Array | float) -> Array:
+        """The factor on the damping, up to critical, with which the steps show a time to settle [s] of a mode."""
         stiffness = mode.elastic + mode.weight
         least, most = self.mass_damping + mode.drag, 2.0 * np.sqrt(stiffness)
         low, high = least, most
@@ -106,22 +116,15 @@ class HangingLocks:
             low, high = np.where(later, middle, low), np.where(later, high, middle)
         return np.where(high < most, (low - least) / _positive(mode.damping), np.nan)
 
-    def _stiffer(self, measure: Callable[[Mode], Array], wanted: Array | float) -> Array:
-        """The factor on the stiffness at which a measure of the bounce, which grows with it, is nearest to one wanted.
-
-        The measure jumps where the bounce passes from one of two modes to another.
-        """
-        bounds = [np.full(len(self.sag), np.log(bound)) for bound in (SOFTEST, STIFFEST)]
-        for _ in range(HALVINGS):
-            middle = 0.5 * (bounds[0] + bounds[1])
-            below = ~(measure(self.modes.bounce(np.exp(middle))) >= wanted)  # too soft where it does not stay in place
-            bounds = [np.where(below, middle, bounds[0]), np.where(below, bounds[1], middle)]
-        found = np.exp(bounds)
-        off = np.array([np.abs(measure(self.modes.bounce(each)) / wanted - 1.0) for each in found])
-        return np.where(off.min(axis=0) <= MET, np.where(off[0] <= off[1], *found), np.nan)
-
     def _exponent(self, mode: Mode) -> NDArray[np.complex128]:
         return damped_exponent(mode.elastic + mode.weight, mode.damping + mode.drag + self.mass_damping)
+
+
+def _of_all(which: NDArray[np.bool_], values: Array) -> Array:
+    """Factors of some locks among those of all."""
+    factors = np.ones(len(which))
+    factors[which] = values
+    return factors
 
 
 def _positive(values: Array) -> Array:

@@ -46,8 +46,11 @@ def dependencies(shot: Shot, obstacles: Sequence[Obstacle] = ()) -> dict[str, An
     """The settings of a shot that a rest shape depends on, and what locks may lie on, as plain values."""
     settings = shot.model_dump(mode="json", include=_SETTINGS)
     made = {**settings, "rest": {**settings["rest"], "mode": rest_mode(shot)}}
-    if any(getattr(shot.motion, name) is not None for name in WORDS):
+    made["strands"]["drag"] = shot.material.drag
+    if shot.motion.given:
+        of_hair = [name for name in shot.motion.given if getattr(shot.motion, name).of_hair]
         made["motion"] = {"seed": shot.motion.seed, "substeps": shot.solver.substeps}
+        made["motion"] |= {"of_hair": of_hair} if of_hair else {}
     if shot.touching and rest_mode(shot) == "equilibrium":
         made["contact"] = shot.touching.model_dump(mode="json", include={"radius", "friction", "pair"})
         made["bodies"] = {body.name: _of_body(body) for body in obstacles}
@@ -67,8 +70,7 @@ def values_at_vertices(shot: Shot, groom: Groom) -> dict[str, NDArray[np.float64
     """The values at vertices that a rest shape depends on besides their positions, by name, shape (n,) each."""
     values = {"gain": at_vertices(shot.rest, "gain", groom, "rest.gain"), **material_factors(shot, groom)}
     for name, word in wanted_words(shot, groom).items():
-        if word is not None:
-            values[name] = np.repeat(word, groom.locks.counts)
+        values[name] = np.repeat(word, groom.locks.counts)
     if "pin" in groom.locks.point:
         led = spring_fraction(groom.locks, 1.0 / (groom.space.fps * shot.solver.substeps))
         values |= dict(zip(PINNED, (groom.locks.point["pin"], led), strict=True))

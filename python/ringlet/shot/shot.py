@@ -85,10 +85,21 @@ class Shot(Section):
     @classmethod
     def _words_replace_material(cls, motion: WantedMotion, info: ValidationInfo) -> WantedMotion:
         given = info.data["strands"].model_fields_set if "strands" in info.data else ()
-        for word, setting in WORDS.items():
-            if getattr(motion, word) is not None and setting in given:
+        for word in motion.given:
+            if (setting := WORDS[word]) in given:
                 raise refuse(f"has {word}, which is given instead of strands.{setting}; take one of them away")
         return motion
+
+    @field_validator("rest")
+    @classmethod
+    def _groomed_locks_do_not_sag(cls, rest: Rest, info: ValidationInfo) -> Rest:
+        sag = info.data["motion"].sag if "motion" in info.data else None
+        if sag is not None and rest.mode != "none":
+            raise refuse(
+                f'has mode "{rest.mode}", in which locks hang as groomed, but motion.sag is {sag.value:g}; take that '
+                'away, or set rest.mode = "none"'
+            )
+        return rest
 
     @field_validator("collider")
     @classmethod
@@ -106,6 +117,11 @@ class Shot(Section):
                 "is there, but nothing touches; add a table [contact]" + (" with on = true" if contact else "")
             )
         return cloths
+
+    @property
+    def material(self) -> Material:
+        """The material of the locks, in the air that they have."""
+        return self.strands.model_copy(update={"drag": self.strands.drag * self.motion.air})
 
     @property
     def touching(self) -> ShotContact | None:

@@ -17,7 +17,7 @@ from ringlet.sim.cores import Cores
 from ringlet.sim.hanging import hang
 from ringlet.sim.motion import check_locks
 from ringlet.sim.roots import Roots
-from ringlet.sim.shot_strands import make_strands, steps_of, wanted_words
+from ringlet.sim.shot_strands import ASKED, make_strands, steps_of, with_words
 
 Array = NDArray[np.float64]
 
@@ -41,21 +41,21 @@ def words_of_shot(
     check_locks(shot, groom.locks)
     cores, first = Cores.of(groom), shot.frames[0]
     rest = rest and cores.reduced(rest)
-    locks = cores.groom.locks
+    made = with_words(shot, cores.groom, cores.material())
+    locks = made.locks
     stiffened = None if rest is None else rest.curve.get("stiffened")
-    strands = make_strands(shot, cores.groom, rest, stiffened, cores.material())
+    strands = make_strands(shot, made, rest, stiffened, cores.material())
     groomed = Roots(cores.groom).carry(clip.at(first), first)
     strands.place(groomed)
     hanging = hang(strands, groomed, shot.forces.gravity)
     steps = steps_of(shot, clip.fps)
     shown, by_itself = hanging.words(steps), hanging.words()
     seen = simulated and seen_motion(groom.locks, simulated, shot.forces.gravity, clip.fps)
-    wanted = wanted_words(shot, cores.groom)
     words = list[Word]()
     for group, of_all, of_simulated in _groups(groom, locks):
         for name, unit in UNITS.items():
             word = Word(group, name, unit, shown=getattr(shown, name)[of_simulated])
-            if (asked := wanted.get(name)) is not None:
+            if (asked := locks.curve.get(f"{ASKED}{name}")) is not None:
                 word.asked = asked[of_simulated]
             if name != "sag":
                 word.by_itself = getattr(by_itself, name)[of_simulated]

@@ -13,22 +13,20 @@ from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
 from ringlet.data.painted import per_lock
 from ringlet.data.random import Random
-from ringlet.motion import Stepping, advised_steps
-from ringlet.shot.motion import WORDS
+from ringlet.motion import STIFFNESS, HangingLocks, Stepping, advised_steps, find_stiffness
 from ringlet.shot.shot import Shot
 from ringlet.sim.hair_pins import held_vertices
-from ringlet.sim.hanging import hang
+from ringlet.sim.hanging import NEARLY_STILL, hang
 from ringlet.sim.strands import Strands
 from ringlet.sim.variation import material_factors
 from ringlet.sim.worn import worn_factors
 
 Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
 
 # Attributes of locks: factors on their material, by its variation, with which they move as words say.
 WANTED = {"bend": "wanted_bend", "damping": "wanted_damping"}
-ROUNDS = 10  # in which stiffness and the shape that it gives are found
-LARGEST = 4.0  # factor on the stiffness in a round
-FOUND, MET = 0.002, 0.05  # changes of the stiffness in a round at which it is found, and at which it counts as such
+ASKED = "asked_"  # begins the names of attributes of locks with the words that are asked of them
 
 
 def make_strands(
@@ -55,7 +53,7 @@ def make_strands(
         of_locks["bend"] = of_locks.get("bend", 1.0) * stiffened
     for name, factor in of_locks.items():
         factors[name] = factors.get(name, 1.0) * np.repeat(factor, locks.counts)
-    return Strands(rest or locks, shot.strands, held_vertices(locks, shot.held), factors)
+    return Strands(rest or locks, shot.material, held_vertices(locks, shot.held), factors)
 
 
 def steps_of(shot: Shot, fps: float) -> Stepping:
@@ -63,17 +61,15 @@ def steps_of(shot: Shot, fps: float) -> Stepping:
     return Stepping(1.0 / (fps * shot.solver.substeps), shot.solver.integrator)
 
 
-def wanted_words(shot: Shot, groom: Groom) -> dict[str, Array | None]:
-    """The words that a shot gives for each lock, shape (count,) each; None where it gives none."""
+def wanted_words(shot: Shot, groom: Groom) -> dict[str, Array]:
+    """The words that a shot gives, by name, with the value of each lock as it stands there, shape (count,)."""
 
-    def of(name: str) -> Array | None:
-        if getattr(shot.motion, name) is None:
-            return None
+    def of(name: str) -> Array:
         setting = f"motion.{name}"
         random = Random(shot.motion.seed, setting)
         return per_lock(shot.motion, name, random, groom.locks, groom.scalp, f"shot: {setting}")
 
-    return {name: of(name) for name in WORDS}
+    return {name: of(name) for name in shot.motion.given}
 
 
 def with_words(shot: Shot, groom: Groom, of_cores: Mapping[str, Array] | None = None) -> Groom:
@@ -82,37 +78,46 @@ def with_words(shot: Shot, groom: Groom, of_cores: Mapping[str, Array] | None = 
     Locks that cannot, since they are pinned, fall over, or bounce faster by their weight alone, keep their material.
     Raises UserError for words that the steps of the shot cannot show.
     """
-    words = wanted_words(shot, groom)
-    if all(word is None for word in words.values()) or WANTED["bend"] in groom.locks.curve:
+    given = wanted_words(shot, groom)
+    if not given or WANTED["bend"] in groom.locks.curve:
         return groom
-    steps = steps_of(shot, groom.space.fps)
+    steps, sags = steps_of(shot, groom.space.fps), shot.rest.mode == "none"
+    points = np.array(groom.locks.points, np.float64)  # where locks hang, as far as that is known
+
+    def hanging(which: Mask, bend: Array, settle: bool) -> HangingLocks:
+        """Some locks that are so many times stiffer."""
+        rows = np.repeat(which, groom.locks.counts)
+        part = _with_factors(replace(groom, locks=groom.locks.take(which)), bend, np.ones(len(bend)))
+        strands = make_strands(shot, part, of_cores={name: of[rows] for name, of in (of_cores or {}).items()})
+        strands.place(points[rows])
+        hung = hang(strands, part.locks.points, shot.forces.gravity, settle=settle, still=NEARLY_STILL)
+        points[rows] = strands.positions
+        return hung
+
+    everything, ones = np.ones(len(groom.locks), bool), np.ones(len(groom.locks))
+    of_hair = {name for name in given if getattr(shot.motion, name).of_hair}
+    searched = sags and bool(STIFFNESS & given.keys())
+    own = hanging(everything, ones, sags and (bool(of_hair) or not searched))
+    words = {name: value * (getattr(own.words(), name) if name in of_hair else 1.0) for name, value in given.items()}
     _check_steps(shot, groom, steps, words)
 
-    def material(which: NDArray[np.bool_], bend: Array) -> tuple[Array, Array]:
-        """Factors for some locks that are so many times stiffer, as ``HangingLocks.material``."""
-        rows = np.repeat(which, groom.locks.counts)
-        part = _with_factors(replace(groom, locks=groom.locks.take(which)), bend[which], np.ones(which.sum()))
-        strands = make_strands(shot, part, of_cores={name: of[rows] for name, of in (of_cores or {}).items()})
-        hanging = hang(strands, part.locks.points, shot.forces.gravity, settle=sags)
-        method = hanging.nearer_material if sags else hanging.material
-        return method(steps, *(None if word is None else word[which] for word in words.values()))
+    def excess(which: Mask, logarithm: Array) -> Array:
+        of_which = {name: word[which] for name, word in words.items()}
+        return hanging(which, np.exp(logarithm), True).excess(steps, of_which)
 
-    sags, pending = shot.rest.mode == "none", np.ones(len(groom.locks), bool)
-    bend, damping = np.ones((2, len(groom.locks)))
-    if not sags:
-        bend, damping = (np.nan_to_num(of, nan=1.0) for of in material(pending, bend))
-        return _with_factors(groom, bend, damping)
-    met = ~pending
-    for _ in range(ROUNDS):
-        stiffer, of_pending = material(pending, bend)
-        stiffer = np.nan_to_num(stiffer, nan=LARGEST)  # where they fall over
-        damping[pending] = np.nan_to_num(of_pending, nan=1.0)
-        met[pending] = np.abs(stiffer - 1.0) <= MET
-        bend[pending] *= stiffer.clip(1.0 / LARGEST, LARGEST)
-        pending[pending] = np.abs(stiffer - 1.0) > FOUND
-        if not pending.any():
-            break
-    return _with_factors(groom, np.where(met, bend, 1.0), np.where(met, damping, 1.0))
+    if searched:
+        # Locks begin with what they need as long as they hang as groomed.
+        begin = np.zeros(len(ones)) if "sag" in words else np.log(np.nan_to_num(own.material(steps, words)[0], nan=1.0))
+        logarithm, met = find_stiffness(excess, begin)
+        bend, damping = np.where(met, np.exp(logarithm), np.nan), ones
+        if "settle" in words:
+            damping = hanging(everything, np.where(met, bend, 1.0), True).damping(steps, words)
+    else:
+        bend, damping = own.material(steps, words)
+    kept = np.isnan(bend)
+    made = _with_factors(groom, np.where(kept, 1.0, bend), np.where(kept, 1.0, np.nan_to_num(damping, nan=1.0)))
+    made.locks.curve.update({f"{ASKED}{name}": word for name, word in words.items()})
+    return made
 
 
 def _with_factors(groom: Groom, bend: Array, damping: Array) -> Groom:
@@ -121,13 +126,13 @@ def _with_factors(groom: Groom, bend: Array, damping: Array) -> Groom:
     return replace(groom, locks=replace(groom.locks, curve=groom.locks.curve | factors))
 
 
-def _check_steps(shot: Shot, groom: Groom, steps: Stepping, words: dict[str, Array | None]) -> None:
+def _check_steps(shot: Shot, groom: Groom, steps: Stepping, words: Mapping[str, Array]) -> None:
     """Refuses words that no lock can show at the steps of the shot."""
-    bounce, settle = words["bounce"], words["settle"]
-    if bounce is None:
+    if "bounce" not in words or np.isnan(words["bounce"]).all():
         return
-    settle = 1.0 / bounce if settle is None else settle  # one bounce at least is to be seen
-    for lock in {int(bounce.argmax()), int(steps.wanted(bounce, settle).real.argmax())}:
+    bounce = words["bounce"]
+    settle = words.get("settle", 1.0 / bounce)  # one bounce at least is to be seen
+    for lock in {int(np.nanargmax(of)) for of in (bounce, steps.wanted(bounce, settle).real)}:
         frequency, wanted, solver = float(bounce[lock]), float(settle[lock]), shot.solver
         if (longest := steps.longest(frequency)) >= wanted:
             continue

@@ -150,16 +150,19 @@ class Strands:
         wind: Vector = (0.0, 0.0, 0.0),
         forces: NDArray[np.floating] | None = None,
         tolerance: float = 1e-9,
+        within: float | None = None,
         dt: float = 1.0,
         steps: int = 2000,
         continuation: Continuation = "material_frame",
     ) -> bool:
         """Lets the strands come to rest under gravity, wind and forces [N], in large steps; held vertices stay.
 
+        within: tolerance of Newton's method within a step [m], by default a hundredth of ``tolerance``
         Returns whether they have: no coordinate moved more than ``tolerance`` [m] in the last step.
         """
         still = self.positions.copy()
-        solver = Solver(newton=50, tolerance=max(tolerance * 1e-2, 1e-14), continuation=continuation)
+        within = max(tolerance * 1e-2, 1e-14) if within is None else within
+        solver = Solver(newton=50, tolerance=within, continuation=continuation)
         for _ in range(steps):
             before = self.positions.copy()
             self.velocities[:] = 0.0

@@ -17,11 +17,13 @@ from ringlet.shot.shot import Shot
 from ringlet.shot.variation import VARIATIONS, Mapped
 
 LEAST_STRETCH = 1e-6  # factor on stretch; strands that hardly resist it reach as far as they fall
+LEAST_WEIGHT = 0.01  # factor on mass, with which the other factors on the radius keep the stiffness
 
 
 def material_factors(shot: Shot, groom: Groom) -> dict[str, NDArray[np.float64]]:
     """The factors on the material that differ from 1, at the vertices of the locks, by name; shape (n,) each.
 
+    The core has no factor on the mass: weight is one on the radius, and stretch and bend keep their stiffness.
     Raises UserError where a product with the material is beyond the bounds of the material.
     """
     variation, factors = shot.variation, dict[str, NDArray[np.float64]]()
@@ -29,9 +31,17 @@ def material_factors(shot: Shot, groom: Groom) -> dict[str, NDArray[np.float64]]
         if getattr(variation, name) == Mapped():
             continue
         factor = at_vertices(variation, name, groom, f"variation.{name}", variation.seed)
-        _check_product(shot.strands, name, factor, groom.locks)
+        _check_product(shot.strands, f"variation.{name}", VARIATIONS[name], factor, groom.locks)
+        if name == "stretch":
+            _check_least(f"variation.{name}", factor, LEAST_STRETCH, groom.locks)
         if (factor != 1.0).any():
             factors[name] = factor
+    if shot.motion.weight != Mapped():
+        factor = at_vertices(shot.motion, "weight", groom, "motion.weight", shot.motion.seed)
+        _check_product(shot.strands, "motion.weight", "density", factor, groom.locks)
+        _check_least("motion.weight", factor, LEAST_WEIGHT, groom.locks)
+        for name, of_weight in {"radius": np.sqrt(factor), "stretch": 1.0 / factor, "bend": factor**-2.0}.items():
+            factors[name] = factors.get(name, 1.0) * of_weight
     return factors
 
 
@@ -49,12 +59,12 @@ def at_vertices(settings: BaseModel, name: str, groom: Groom, setting: str, seed
     return values if of_point is None else values * _at_points(of_point, locks, setting)
 
 
-def _check_product(material: Material, name: str, factor: NDArray[np.float64], locks: Curves) -> None:
-    """Raises UserError for a factor that takes the material beyond its own bounds."""
-    setting = VARIATIONS[name]
+def _check_product(
+    material: Material, factor_of: str, setting: str, factor: NDArray[np.float64], locks: Curves
+) -> None:
+    """Raises UserError for a factor that takes a setting of the material beyond its own bounds."""
     for vertex in (factor.argmin(), factor.argmax()):
-        lock = locks.ids[np.searchsorted(locks.offsets, vertex, side="right") - 1]
-        where = f"shot: variation.{name} is {factor[vertex]:.6g} on lock {lock}"
+        where = _where(factor_of, factor, vertex, locks)
         product = getattr(material, setting) * float(factor[vertex])
         try:
             # The product of twist goes up to its limit, whatever the factor.
@@ -62,8 +72,18 @@ def _check_product(material: Material, name: str, factor: NDArray[np.float64], l
         except ValidationError as error:
             refused = explain(error, where, name_of=lambda _: f"strands.{setting}")
             raise UserError(f"{refused}, change its ramp or map") from None
-        if name == "stretch" and factor[vertex] < LEAST_STRETCH:
-            raise UserError(f"{where}; must be at least {LEAST_STRETCH:g}, change its ramp or map")
+
+
+def _check_least(factor_of: str, factor: NDArray[np.float64], least: float, locks: Curves) -> None:
+    """Raises UserError for a factor that is too small."""
+    if factor.min() < least:
+        where = _where(factor_of, factor, factor.argmin(), locks)
+        raise UserError(f"{where}; must be at least {least:g}, change its ramp or map")
+
+
+def _where(factor_of: str, factor: NDArray[np.float64], vertex: np.intp, locks: Curves) -> str:
+    lock = locks.ids[np.searchsorted(locks.offsets, vertex, side="right") - 1]
+    return f"shot: {factor_of} is {factor[vertex]:.6g} on lock {lock}"
 
 
 def _places(locks: Curves) -> NDArray[np.float64]:
