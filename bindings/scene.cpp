@@ -31,15 +31,15 @@ nb::dict memory_of(const SceneMemory &memory) {
     std::vector<int> penetrating, lagging;
     std::vector<Vec3> places;
     for (const InitialOverlap &of : memory.overlaps) {
-        overlapping.push_back(of.pair);
+        overlapping.push_back(of.name);
         overlaps.insert(overlaps.end(), {of.gap, of.force, of.activation});
     }
     for (const FrictionState &of : memory.friction) {
-        sticking.push_back(of.pair);
+        sticking.push_back(of.name);
         friction.insert(friction.end(), of.slip.begin(), of.slip.end());
     }
-    for (const auto &[pair, force] : memory.lagged_forces) {
-        lagged.push_back(pair);
+    for (const auto &[name, force] : memory.lagged_forces) {
+        lagged.push_back(name);
         forces.push_back(force);
     }
     for (const auto &[vertex, height] : memory.penetrations) {
@@ -126,10 +126,10 @@ nb::tuple arrays_of(View<Contact> contacts) {
     std::vector<int> vertices;
     std::vector<double> values;
     for (const Contact &c : contacts) {
-        vertices.insert(vertices.end(), c.vertex.begin(), c.vertex.end());
-        values.insert(values.end(), c.weight.begin(), c.weight.end());
-        values.insert(values.end(), c.normal.data(), c.normal.data() + 3);
-        values.insert(values.end(), {c.d_hat, c.force});
+        vertices.insert(vertices.end(), c.at.vertex.begin(), c.at.vertex.end());
+        values.insert(values.end(), c.at.weight.begin(), c.at.weight.end());
+        values.insert(values.end(), c.barrier.normal.data(), c.barrier.normal.data() + 3);
+        values.insert(values.end(), {c.barrier.d_hat, c.force()});
     }
     const size_t count = contacts.size();
     return nb::make_tuple(to_numpy<int>(std::move(vertices), {count, 4}), to_numpy<double>(std::move(values), {count, 9}));
@@ -152,7 +152,7 @@ void bind_scene(nb::module_ &module) {
                     throw std::invalid_argument("scene: as many lengths and stiffnesses as ties");
                 self.ties.clear();
                 for (size_t k = 0; k < count; ++k)
-                    self.ties.push_back({{vertices(k, 0), vertices(k, 1)}, view(lengths)[k], view(stiffness)[k]});
+                    self.ties.emplace_back(vertices(k, 0), vertices(k, 1), view(lengths)[k], view(stiffness)[k]);
             },
             "vertices"_a, "lengths"_a, "stiffness"_a,
             "Ties vertices of strands: pairs (k, 2) int32, their distances at rest [m] and spring constants [N/m], shape (k,).")

@@ -46,20 +46,10 @@ public:
             gradient_.segment<3>(3 * i) = inertia() * (at(x, i) - inertial_[i]) + stiffness_ * (at(x, i) - anchors_[i]);
     }
     const double *gradient() const override { return gradient_.data(); }
-    void add_contacts(int vertex, const ContactSet &contacts, View<ContactValue> values) override {
-        for (const ContactSet::Role &role : contacts.of(vertex)) {
-            const Contact &c = contacts.contacts()[role.contact];
-            const double weight = c.weight[role.as];
-            gradient_.segment<3>(row(vertex)) += weight * values[role.contact].gradient;
-            const bool second = role.as >= c.first;
-            for (int other = second ? c.first : 0; other < (second ? 4 : c.first); ++other)
-                hessian_.block<3, 3>(row(vertex), row(c.vertex[other])) +=
-                    weight * c.weight[other] * values[role.contact].hessian;
-        }
-    }
-    void add_spring(int vertex, const Vec3 &n, double force, double stiffness) override {
-        gradient_.segment<3>(row(vertex)) -= force * n;
-        hessian_.block<3, 3>(row(vertex), row(vertex)) += stiffness * n * n.transpose();
+    void add_gradient(int vertex, const Vec3 &gradient) override { gradient_.segment<3>(row(vertex)) += gradient; }
+    void add_block(int vertex, int other, const Mat3 &block) override {
+        hessian_.block<3, 3>(row(vertex), row(other)) += block;
+        if (vertex != other) hessian_.block<3, 3>(row(other), row(vertex)) += block.transpose();
     }
     void add_to(MatrixAssembly &matrix) const override {
         const int count = int(positions_.size()), stride = matrix.block(), first = objects_[0].first;

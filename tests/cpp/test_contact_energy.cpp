@@ -14,16 +14,34 @@ namespace {
 
 Contact some_contact(Random &random) {
     Contact contact{};
-    contact.first = 2;
-    contact.normal = random.vector(1.0).normalized();
-    contact.d_hat = 1e-3;
-    contact.barrier_end = 1e-3 / 64;
-    contact.stiffness = random(0.1, 10.0);
-    contact.friction = random(0.0, 1.0);
-    contact.stick_length = 2e-5;
-    contact.reference = random.vector(1e-3);
-    contact.lagged_force = random(0.0, 1e-3);
+    contact.at.first = 2;
+    const Vec3 normal = random.vector(1.0).normalized();
+    contact.barrier = {normal, random(0.1, 10.0), 1e-3, 1e-3 / 64};
+    contact.friction = {normal, random(0.0, 1.0), 2e-5, random.vector(1e-3), random(0.0, 1e-3)};
     return contact;
+}
+
+// The gradient against differences of the energy; `stiffness` is what the law can be as stiff as [N/m].
+template <PairForce Law> void check_derivatives(const Law &law, const Vec3 &s, double stiffness) {
+    const double h = 1e-9;
+    const PairValue value = law.value(s);
+    BOOST_TEST(value.energy == law.energy(s), boost::test_tools::tolerance(1e-12));
+    for (int k = 0; k < 3; ++k) {
+        const Vec3 step = h * Vec3::Unit(k);
+        const double slope = (law.energy(s + step) - law.energy(s - step)) / (2 * h);
+        BOOST_TEST(std::abs(slope - value.gradient[k]) < 1e-4 * (value.gradient.norm() + 1e-3 * stiffness));
+    }
+    const Eigen::SelfAdjointEigenSolver<Mat3> eigen(value.hessian);
+    BOOST_TEST(eigen.eigenvalues()[0] >= -1e-9 * std::max(eigen.eigenvalues()[2], 0.0));
+}
+
+// The Hessian against differences of the gradient, where it is not projected.
+template <PairForce Law> void check_hessian(const Law &law, const Vec3 &s, double h, double stiffness) {
+    for (int k = 0; k < 3; ++k) {
+        const Vec3 step = h * Vec3::Unit(k);
+        const Vec3 column = (law.value(s + step).gradient - law.value(s - step).gradient) / (2 * h);
+        BOOST_TEST((column - law.value(s).hessian.col(k)).norm() < 1e-5 * stiffness);
+    }
 }
 
 } // namespace
@@ -50,22 +68,23 @@ BOOST_AUTO_TEST_CASE(barrier_and_friction_forces_are_the_derivatives_of_their_po
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_tie_pulls_and_pushes_by_the_derivatives_of_its_energy) {
+BOOST_AUTO_TEST_CASE(each_pair_force_has_the_derivatives_of_its_energy) {
     Random random;
-    const double h = 1e-8;
-    for (int i = 0; i < 200; ++i) {
-        const Contact tie = as_contact({{3, 7}, 1e-3, random(1.0, 10.0)}, i);
-        const Vec3 s = random(0.5, 2.0) * 1e-3 * random.vector(1.0).normalized();
-        const ContactValue value = contact_value(tie, s);
-        BOOST_TEST(value.energy == contact_energy(tie, s));
-        for (int k = 0; k < 3; ++k) {
-            const ContactValue up = contact_value(tie, s + h * Vec3::Unit(k)), down = contact_value(tie, s - h * Vec3::Unit(k));
-            BOOST_TEST(std::abs((up.energy - down.energy) / (2 * h) - value.gradient[k]) < 1e-8 * tie.stiffness);
-            if (s.norm() > 1e-3) // pressed together the Hessian is projected
-                BOOST_TEST(((up.gradient - down.gradient) / (2 * h) - value.hessian.col(k)).norm() < 1e-5 * tie.stiffness);
-        }
-        BOOST_TEST(Eigen::SelfAdjointEigenSolver<Mat3>(value.hessian).eigenvalues()[0] > -1e-9 * tie.stiffness);
-        BOOST_TEST(contact_value(tie, 1e-3 * s.normalized()).gradient.norm() < 1e-12 * tie.stiffness);
+    for (int i = 0; i < 1000; ++i) {
+        const Contact contact = some_contact(random);
+        const Vec3 s = random.vector(1e-3);
+        check_derivatives(contact, s, contact.barrier.stiffness);
+        check_derivatives(contact.barrier, s, contact.barrier.stiffness);
+        check_derivatives(contact.friction, s, contact.friction.largest() / 2e-5);
+        const double length = contact.friction.slip(s).norm();
+        if (std::abs(length - 2e-5) > 1e-8) // the stiffness of friction is continuous, its slope not
+            check_hessian(contact.friction, s, 1e-10, contact.friction.largest() / 2e-5);
+
+        const Tie tie(3, 7, 1e-3, random(1.0, 10.0));
+        const Vec3 stretched = random(0.5, 2.0) * 1e-3 * random.vector(1.0).normalized();
+        check_derivatives(tie, stretched, tie.stiffness);
+        if (stretched.norm() > 1e-3) check_hessian(tie, stretched, 1e-8, tie.stiffness); // pressed together it is projected
+        BOOST_TEST(tie.value(1e-3 * stretched.normalized()).gradient.norm() < 1e-12 * tie.stiffness);
     }
 }
 
@@ -79,33 +98,13 @@ BOOST_AUTO_TEST_CASE(activation_distance_and_slip_invert_the_forces) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(the_gradient_of_a_contact_is_the_derivative_of_its_energy_and_the_hessian_semi_definite) {
-    Random random;
-    const double h = 1e-9;
-    for (int i = 0; i < 1000; ++i) {
-        const Contact contact = some_contact(random);
-        const Vec3 separation = random.vector(1e-3);
-        const ContactValue value = contact_value(contact, separation);
-        const double scale = value.gradient.norm() + contact.stiffness * contact.d_hat;
-        for (int k = 0; k < 3; ++k) {
-            const Vec3 step = h * Vec3::Unit(k);
-            const double slope =
-                (contact_energy(contact, separation + step) - contact_energy(contact, separation - step)) / (2 * h);
-            BOOST_TEST(std::abs(slope - value.gradient[k]) < 1e-4 * scale);
-        }
-        const Eigen::SelfAdjointEigenSolver<Mat3> eigen(value.hessian);
-        BOOST_TEST(eigen.eigenvalues()[0] >= -1e-9 * eigen.eigenvalues()[2]);
-    }
-}
-
 BOOST_AUTO_TEST_CASE(friction_stays_within_its_cone) {
     Random random;
     for (int i = 0; i < 1000; ++i) {
         const Contact contact = some_contact(random);
-        const Vec3 gradient = contact_value(contact, random.vector(1e-3)).gradient;
-        const Vec3 tangential = gradient - contact.normal.dot(gradient) * contact.normal;
-        BOOST_TEST(tangential.norm() <=
-                   contact.friction * contact.lagged_force + 1e-14 * gradient.norm()); // rounding of the normal force
+        const Vec3 gradient = contact.value(random.vector(1e-3)).gradient, &normal = contact.barrier.normal;
+        const Vec3 tangential = gradient - normal.dot(gradient) * normal;
+        BOOST_TEST(tangential.norm() <= contact.friction.largest() + 1e-14 * gradient.norm()); // rounding of the normal force
     }
 }
 
@@ -131,7 +130,7 @@ BOOST_AUTO_TEST_CASE(edges_that_touch_at_prescribed_ends_are_no_stiffer_than_the
         ContactSet contacts;
         contacts.find(mesh, material, pairs.contact_pairs(now), now, now);
         BOOST_REQUIRE(contacts.contacts().size() == 1u);
-        BOOST_TEST(contacts.contacts()[0].stiffness == 2.0, boost::test_tools::tolerance(1e-12));
+        BOOST_TEST(contacts.contacts()[0].barrier.stiffness == 2.0, boost::test_tools::tolerance(1e-12));
     }
 }
 

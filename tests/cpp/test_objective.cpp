@@ -141,7 +141,7 @@ BOOST_AUTO_TEST_CASE(the_couplings_are_the_off_diagonal_part_of_the_hessian) {
     std::vector<Vec3> at_points;
     for (int k = 0; k < couplings.count(); ++k) at_points.push_back(p.segment<3>(3 * couplings.vertex(k)));
     std::vector<double> curvature(4, 0.0);
-    couplings.multiply(at_points, scene.objective->contact_values(), std::vector<unsigned char>(4, 1), curvature);
+    couplings.multiply(at_points, scene.objective->pair_values(), std::vector<unsigned char>(4, 1), curvature);
     const Eigen::VectorXd expected = C * p;
     for (int k = 0; k < couplings.count(); ++k)
         BOOST_TEST((couplings.product(k) - expected.segment<3>(3 * couplings.vertex(k))).norm() < 1e-10 * expected.norm());
@@ -170,8 +170,8 @@ BOOST_AUTO_TEST_CASE(damping_resists_relative_motion_and_changes_neither_forces_
     BOOST_TEST((added * joint).norm() < 1e-12 * added.norm());
     double expected = 0.0;
     for (const Contact &contact : scene.objective->contacts.contacts()) {
-        BOOST_TEST(contact.damping == 0.03 * contact.stiffness);
-        if (scene.table.object_of(contact.vertex[0]) == 0) expected += contact.damping;
+        BOOST_TEST(contact.damping.coefficient == 0.03 * contact.barrier.stiffness);
+        if (scene.table.object_of(contact.at.vertex[0]) == 0) expected += contact.damping.coefficient;
     }
     BOOST_TEST(alone.dot(added * alone) == expected, boost::test_tools::tolerance(1e-9));
 }
@@ -187,8 +187,8 @@ BOOST_AUTO_TEST_CASE(damped_pairs_are_contacts_beyond_their_own_activation_dista
     find_contacts(scene, 0.03);
     BOOST_REQUIRE(contacts.contacts().size() == 2u);
     for (const Contact &contact : contacts.contacts()) {
-        BOOST_TEST(contact.force == 0.0);
-        BOOST_TEST(contact.damping > 0.0);
+        BOOST_TEST(contact.force() == 0.0);
+        BOOST_TEST(contact.damping.coefficient > 0.0);
     }
     scene.system->assemble(scene.unknowns(), {});
     AlignedVector together(scene.blocks->size());
@@ -267,8 +267,9 @@ BOOST_AUTO_TEST_CASE(an_initial_overlap_has_only_its_own_activation_distance_to_
     find_contacts(scene);
     BOOST_REQUIRE(contacts.contacts().size() == 2u);
     for (const Contact &contact : contacts.contacts()) {
-        BOOST_TEST(contact.d_hat < 0.9 * 2.0 * SpringScene::radius);
-        BOOST_TEST(contact.loaded_fraction == contact.d_hat / (2.0 * SpringScene::radius), boost::test_tools::tolerance(1e-12));
+        BOOST_TEST(contact.barrier.d_hat < 0.9 * 2.0 * SpringScene::radius);
+        BOOST_TEST(contact.loaded_fraction == contact.barrier.d_hat / (2.0 * SpringScene::radius),
+                   boost::test_tools::tolerance(1e-12));
     }
 }
 

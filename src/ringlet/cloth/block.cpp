@@ -57,23 +57,9 @@ void ClothBlock::assemble(const double *x, double *of_lanes) {
     objective_.assemble(vectors(x), gradient_, matrix_);
 }
 
-// A side's vertices share a triangle or an edge, so that the cloth's own pattern has their blocks.
-void ClothBlock::add_contacts(int v, const ContactSet &contacts, View<ContactValue> values) {
-    for (const ContactSet::Role &role : contacts.of(v)) {
-        const Contact &c = contacts.contacts()[role.contact];
-        const ContactValue &value = values[role.contact];
-        gradient_[v - first_] += c.weight[role.as] * value.gradient;
-        const bool second = role.as >= c.first;
-        for (int other = second ? c.first : 0; other < (second ? 4 : c.first); ++other)
-            if (c.weight[other] != 0.0 && !model_.held[c.vertex[other] - first_])
-                matrix_.block(matrix_.slot(v - first_, c.vertex[other] - first_)) +=
-                    c.weight[role.as] * c.weight[other] * value.hessian;
-    }
-}
-
-void ClothBlock::add_spring(int vertex, const Vec3 &n, double force, double stiffness) {
-    gradient_[vertex - first_] -= force * n;
-    matrix_.block(matrix_.diagonal(vertex - first_)) += stiffness * n * n.transpose();
+void ClothBlock::add_block(int row, int column, const Mat3 &block) {
+    matrix_.block(matrix_.slot(row - first_, column - first_)) += block;
+    if (row != column) matrix_.block(matrix_.slot(column - first_, row - first_)) += block.transpose();
 }
 
 // Unknowns that a vertex of a cloth does not have get the unit matrix.

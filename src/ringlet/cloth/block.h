@@ -40,8 +40,8 @@ public:
     void energies(const double *x, double *of_lanes) override;
     void assemble(const double *x, double *of_lanes) override;
     const double *gradient() const override { return gradient_.data()->data(); }
-    void add_contacts(int vertex, const ContactSet &contacts, View<ContactValue> values) override;
-    void add_spring(int vertex, const Vec3 &n, double force, double stiffness) override;
+    void add_gradient(int vertex, const Vec3 &gradient) override { gradient_[vertex - first_] += gradient; }
+    void add_block(int row, int column, const Mat3 &block) override;
     void add_to(MatrixAssembly &matrix) const override;
     void factor() override { factor_.factor(matrix_); }
     void solve(double *b) const override;

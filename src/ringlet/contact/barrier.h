@@ -1,17 +1,13 @@
-// The contact barrier: a potential of the gap, C² down to its end.
+// The contact barrier: a potential of the gap, C² down to its end, that pushes along the normal.
 #pragma once
 
+#include "ringlet/contact/pair_force.h"
 #include "ringlet/contact/settings.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace ringlet {
-
-// A potential with its first and second derivative.
-struct Potential {
-    double value, first, second;
-};
 
 // Two-stage barrier at a gap g with activation distance r (Chen et al. 2025), with an end:
 //   ½ (r − g)²                        r/2 ≤ g < r
@@ -42,5 +38,23 @@ inline double activation_distance(double f, double g) {
     const double d_hat = (f <= g ? g + f : 2.0 * std::sqrt(f * g)) / r;
     return g <= (1.0 - a) * d_hat ? d_hat : g + a * f + std::sqrt(a * f * (2.0 * g + a * f));
 }
+
+// k b(n · s).
+struct Barrier {
+    Vec3 normal;       // n, from the second primitive to the first
+    double stiffness;  // k [N/m]
+    double d_hat, end; // activation distance; gap below which it is a parabola [m]
+
+    Potential at(double gap) const { return barrier(gap, d_hat, end); }
+    double force(double gap) const { return -stiffness * at(gap).first; } // [N]
+    double energy_at(double gap) const { return stiffness * at(gap).value; }
+
+    double energy(const Vec3 &s) const { return energy_at(normal.dot(s)); }
+    PairValue value(const Vec3 &s) const {
+        const Potential push = at(normal.dot(s));
+        return {stiffness * push.value, stiffness * push.first * normal, stiffness * push.second * normal * normal.transpose()};
+    }
+};
+static_assert(PairForce<Barrier>);
 
 } // namespace ringlet

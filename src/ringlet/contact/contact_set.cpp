@@ -2,9 +2,9 @@
 
 #include "ringlet/contact/known.h"
 #include "ringlet/contact/settings.h"
+#include "ringlet/contact/turning.h"
 #include "ringlet/math/collect.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -15,50 +15,24 @@ namespace {
 // The contact of a pair at one of its points, but for what depends on the activation distance.
 Contact contact_at(const CollisionMesh &mesh, const ContactMaterial &material, const ContactPair &pair,
                    const ContactPoint &point, View<Vec3> positions) {
-    const Stencil at = stencil(mesh, pair, point.closest);
     Contact contact{};
-    contact.vertex = at.vertex, contact.weight = at.weight, contact.first = at.first;
-    contact.normal = separation(contact, positions) / std::sqrt(point.closest.distance2);
-    contact.stiffness = point.share * pair_stiffness(mesh, at, material);
-    contact.friction = material.friction_of(at.vertex[0], at.vertex[3]);
-    contact.stick_length = material.stick_length;
-    contact.pair = contact_name(pair, point.number);
+    contact.at = stencil(mesh, pair, point.closest);
+    contact.name = contact_name(pair, point.number);
+    contact.gap = std::sqrt(point.closest.distance2);
+    const auto &vertex = contact.at.vertex;
+    contact.barrier.normal = contact.friction.normal = contact.at.separation(positions) / contact.gap;
+    contact.barrier.stiffness = point.share * pair_stiffness(mesh, contact.at, material);
+    contact.friction.coefficient = material.friction_of(vertex[0], vertex[3]);
+    contact.friction.stick_length = material.stick_length;
     return contact;
 }
 
-// An orthonormal frame with its first axis along u and its second across u and v; 0 where they are parallel.
-Mat3 frame(const Vec3 &u, const Vec3 &v) {
-    Mat3 axes;
-    axes.col(0) = u.normalized();
-    axes.col(1) = u.cross(v).normalized();
-    axes.col(2) = axes.col(0).cross(axes.col(1));
-    return axes;
-}
-
-// How a move from `start` to `end` turns a contact that it leaves rigid: with the triangle, with both edges, or with an edge
-// and the line to the other where they are almost parallel. The normal does not tell, since it also turns as the closest points
-// wander over a surface.
-Mat3 rotation(const Contact &contact, View<Vec3> start, View<Vec3> end) {
-    const int p = contact.vertex[0], q = contact.vertex[1], r = contact.vertex[2], s = contact.vertex[3];
-    const auto turned = [&](const auto &frame_of) { return Mat3(frame_of(end) * frame_of(start).transpose()); };
-    if (!contact.edge_edge()) return turned([&](View<Vec3> x) { return frame(x[r] - x[q], x[s] - x[q]); });
-    const auto almost_parallel = [&](View<Vec3> x) {
-        const Vec3 a = x[q] - x[p], b = x[s] - x[r];
-        return a.cross(b).squaredNorm() <= contact_settings::parallel_sine2 * a.squaredNorm() * b.squaredNorm();
-    };
-    if (almost_parallel(start) || almost_parallel(end))
-        return turned([&](View<Vec3> x) { return frame(x[q] - x[p], separation(contact, x)); });
-    return turned([&](View<Vec3> x) { return frame(x[q] - x[p], x[s] - x[r]); });
-}
-
 // The slip at which friction holds a force, given as InitialForce gives it.
-Vec3 slip_of_force(const Contact &contact, View<Vec3> positions, const Vec3 &force) {
-    const Vec3 edge = positions[contact.vertex[3]] - positions[contact.vertex[2]];
-    const Vec3 tangent = (edge - contact.normal.dot(edge) * contact.normal).normalized();
-    const Vec3 held = force[1] * tangent + force[2] * contact.normal.cross(tangent);
-    const double limit = contact.friction * force[0], length = held.norm();
-    if (!(limit > 0.0 && length > 0.0)) return Vec3::Zero();
-    return -slip_to_hold(std::min(length / limit, 1.0)) * contact.stick_length / length * held;
+Vec3 initial_slip(const Contact &contact, View<Vec3> positions, const Vec3 &force) {
+    const Vec3 &normal = contact.friction.normal;
+    const Vec3 edge = positions[contact.at.vertex[3]] - positions[contact.at.vertex[2]];
+    const Vec3 tangent = (edge - normal.dot(edge) * normal).normalized();
+    return contact.friction.slip_that_holds(force[1] * tangent + force[2] * normal.cross(tangent), force[0]);
 }
 
 // Calls work(point, gap, activation distance, barrier end, loaded fraction) for the points of a pair; beyond the activation
@@ -95,20 +69,16 @@ void ContactSet::begin(const CollisionMesh &mesh, const ContactMaterial &materia
         if (!loaded) continue;
         for_contact_points(mesh, pair, positions, [&](const ContactPoint &point) {
             const Contact contact = contact_at(mesh, material, pair, point, positions);
-            lagged_.push_back({contact.pair, point.share * force->second[0]});
-            friction_.push_back({contact.pair, slip_of_force(contact, positions, force->second)});
+            lagged_.push_back({contact.name, point.share * force->second[0]});
+            friction_.push_back({contact.name, initial_slip(contact, positions, force->second)});
         });
     }
 }
 
 void ContactSet::commit_friction(View<Vec3> positions) {
     friction_.clear();
-    for (const Contact &contact : contacts_) {
-        if (contact.is_tie()) continue;
-        const Vec3 u = slip(contact, separation(contact, positions));
-        const double length = u.norm(), most = contact.stick_length;
-        friction_.push_back({contact.pair, length > most ? Vec3(most / length * u) : u});
-    }
+    for (const Contact &contact : contacts_)
+        friction_.push_back({contact.name, contact.friction.kept_slip(contact.at.separation(positions))});
 }
 
 // Concatenates what add(pair, its initial overlap or null, list) appends for each pair.
@@ -127,24 +97,23 @@ std::vector<Contact> ContactSet::linearise(const CollisionMesh &mesh, const Cont
         for_points_of(mesh, pair, overlap, positions,
                       [&](const ContactPoint &point, double gap, double d_hat, double barrier_end, double loaded) {
                           Contact contact = contact_at(mesh, material, pair, point, positions);
-                          if (mesh.moves[contact.vertex[0]] && mesh.moves[contact.vertex[3]])
-                              contact.damping = damping * contact.stiffness;
-                          if (gap >= d_hat && contact.damping == 0.0) return;
-                          contact.d_hat = d_hat;
-                          contact.barrier_end = barrier_end;
+                          if (mesh.moves[contact.at.vertex[0]] && mesh.moves[contact.at.vertex[3]])
+                              contact.damping.coefficient = damping * contact.barrier.stiffness;
+                          if (gap >= d_hat && contact.damping.coefficient == 0.0) return;
+                          contact.barrier.d_hat = d_hat;
+                          contact.barrier.end = barrier_end;
                           contact.loaded_fraction = loaded;
-                          contact.reference = separation(contact, start);
-                          contact.gap = gap;
-                          contact.force = normal_force(contact, separation(contact, positions));
+                          contact.friction.reference = contact.at.separation(start);
                           contacts.push_back(contact);
                       });
     };
     std::vector<Contact> found = collect_of_pairs<Contact>(pairs, add);
-    for_known(friction_, found, [](const FrictionState &before, Contact &now) { now.reference -= before.slip; });
+    for_known(friction_, found, [](const FrictionState &before, Contact &now) { now.friction.reference -= before.slip; });
     if (guess_.empty()) return found;
 #pragma omp parallel for schedule(static)
     for (int k = 0; k < int(found.size()); ++k)
-        if (found[k].friction > 0.0) found[k].reference = rotation(found[k], start, guess_) * found[k].reference;
+        if (Friction &friction = found[k].friction; friction.coefficient > 0.0)
+            friction.reference = turning(found[k].at, start, guess_) * friction.reference;
     return found;
 }
 
@@ -162,7 +131,7 @@ std::vector<PairEnergy> ContactSet::energies(const CollisionMesh &mesh, const Co
                       });
     };
     std::vector<PairEnergy> found = collect_of_pairs<PairEnergy>(pairs, add);
-    for_known(contacts_, found, [](const Contact &contact, PairEnergy &there) { there.stiffness = contact.stiffness; });
+    for_known(contacts_, found, [](const Contact &contact, PairEnergy &there) { there.stiffness = contact.barrier.stiffness; });
     return found;
 }
 
@@ -171,23 +140,22 @@ void ContactSet::find(const CollisionMesh &mesh, const ContactMaterial &material
     overlaps.activate(mesh, material, pairs); // the same until contacts are found again, whatever the stiffness is then
     std::vector<Contact> found = linearise(mesh, material, pairs, start, positions, damping);
     for_known(lagged_, found, [](const LaggedForce &before, Contact &now) {
-        if (now.gap < now.d_hat) now.lagged_force = before.force;
+        if (now.gap < now.barrier.d_hat) now.friction.normal_force = before.force;
     });
     contacts_ = std::move(found);
-    for (const Tie &tie : ties) contacts_.push_back(as_contact(tie, int(&tie - ties.data())));
     lagged_.clear();
-    for (const Contact &contact : contacts_) lagged_.push_back({contact.pair, contact.lagged_force});
+    for (const Contact &contact : contacts_) lagged_.push_back({contact.name, contact.friction.normal_force});
     index(mesh);
 }
 
 void ContactSet::index(const CollisionMesh &mesh) {
     const int vertices = int(mesh.moves.size());
     roles_ = {size_t(vertices), [&](const auto &work) {
-                  for (int k = 0; k < int(contacts_.size()); ++k)
-                      for (int i = 0; i < 4; ++i) {
-                          const int v = contacts_[k].vertex[i];
-                          if (mesh.moves[v] && contacts_[k].weight[i] != 0.0) work(v, Role{k, i});
-                      }
+                  for (int pair = 0; pair < count(); ++pair) {
+                      const Stencil &at = stencil_of(pair);
+                      for (int i = 0; i < 4; ++i)
+                          if (mesh.moves[at.vertex[i]] && at.weight[i] != 0.0) work(at.vertex[i], Role{pair, i});
+                  }
               }};
     vertices_.clear();
     for (int v = 0; v < vertices; ++v)

@@ -1,4 +1,4 @@
-// The contacts of a scene at given positions, with what friction remembers of them from step to step.
+// The pair forces of a scene at given positions, contacts and ties, with what friction remembers from step to step.
 #pragma once
 
 #include "ringlet/contact/initial_overlap.h"
@@ -11,14 +11,14 @@ namespace ringlet {
 
 // The slip that friction still holds as a step ends: the spring that the next step begins with.
 struct FrictionState {
-    uint64_t pair; // name of the contact
+    uint64_t name; // of the contact
     Vec3 slip;     // [m]
 };
 
 // The normal force that friction uses next: that which the contact is expected to have.
 struct LaggedForce {
-    uint64_t pair;
-    double force; // [N]
+    uint64_t name; // of the contact
+    double force;  // [N]
 };
 
 // The force of a pair as a scene begins.
@@ -30,7 +30,7 @@ struct InitialForce {
 
 // The barrier energy of a contact at other positions than those it was found at.
 struct PairEnergy {
-    uint64_t pair;
+    uint64_t name;
     std::array<int, 2> objects;
     double stiffness, barrier; // [N/m], [m²]
 
@@ -40,7 +40,7 @@ struct PairEnergy {
 class ContactSet {
 public:
     InitialOverlaps overlaps;
-    std::vector<Tie> ties; // always among the contacts, the last of them
+    std::vector<Tie> ties;
 
     // The contact pairs before the first step are initial overlaps; some have a force.
     void begin(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<ContactPair> &pairs,
@@ -65,18 +65,24 @@ public:
                                      const std::vector<ContactPair> &pairs, View<Vec3> positions) const;
 
     const std::vector<Contact> &contacts() const { return contacts_; }
-    View<Contact> without_ties() const { // nothing before they are found
-        const View<Contact> all = contacts_;
-        return all.empty() ? all : all.first(all.size() - ties.size());
-    }
     void set_lagged_force(int contact, double force) { lagged_[contact].force = force; }
 
-    // The contacts that act on a vertex, and as which of their four.
+    // Pairs are the contacts, then the ties.
+    int count() const { return int(contacts_.size() + ties.size()); }
+    const Stencil &stencil_of(int pair) const { return is_contact(pair) ? contacts_[pair].at : tie(pair).at; }
+    PairValue value(int pair, const Vec3 &separation) const {
+        return is_contact(pair) ? contacts_[pair].value(separation) : tie(pair).value(separation);
+    }
+    double kept_energy(int pair, const Vec3 &separation) const { // as of a contact
+        return is_contact(pair) ? contacts_[pair].kept_energy(separation) : tie(pair).energy(separation);
+    }
+
+    // The pairs that act on a vertex, and as which of their four.
     struct Role {
-        int contact, as;
+        int pair, as;
     };
     View<Role> of(int vertex) const { return roles_.of(vertex); }
-    const std::vector<int> &vertices() const { return vertices_; } // dynamic ones with contacts
+    const std::vector<int> &vertices() const { return vertices_; } // dynamic ones of pairs
 
     // What a step remembers, in the order of names.
     const std::vector<FrictionState> &friction() const { return friction_; }
@@ -85,6 +91,9 @@ public:
     void recall(std::vector<LaggedForce> forces) { lagged_ = std::move(forces); }
 
 private:
+    bool is_contact(int pair) const { return pair < int(contacts_.size()); }
+    const Tie &tie(int pair) const { return ties[pair - contacts_.size()]; }
+
     template <class T, class Add> std::vector<T> collect_of_pairs(const std::vector<ContactPair> &pairs, const Add &add) const;
     std::vector<Contact> linearise(const CollisionMesh &mesh, const ContactMaterial &material,
                                    const std::vector<ContactPair> &pairs, View<Vec3> start, View<Vec3> positions,

@@ -19,9 +19,9 @@ void InitialOverlaps::settle(const std::vector<ContactPair> &pairs, const std::v
                              double length) {
     for (InitialOverlap &overlap : all_) overlap.force = 0.0;
     for_known(
-        all_, contacts, [](const Contact &contact) { return pair_of(contact.pair); },
+        all_, contacts, [](const Contact &contact) { return pair_of(contact.name); },
         [&](InitialOverlap &overlap, const Contact &contact) {
-            overlap.force += normal_force(contact, separation(contact, positions));
+            overlap.force += contact.barrier.force(contact.barrier.normal.dot(contact.at.separation(positions)));
         });
     std::vector<InitialOverlap> left;
     for_known(all_, pairs, name, [&](const InitialOverlap &overlap, const ContactPair &pair) {
@@ -41,12 +41,12 @@ void InitialOverlaps::activate(const CollisionMesh &mesh, const ContactMaterial 
 }
 
 const InitialOverlap *InitialOverlaps::Search::find(const ContactPair &pair) {
-    const auto is_before = [](const InitialOverlap &overlap, uint64_t name) { return overlap.pair < name; };
+    const auto is_before = [](const InitialOverlap &overlap, uint64_t name) { return overlap.name < name; };
     const uint64_t name = contact_name(pair);
     if (!begun_) left_ = left_.subspan(std::lower_bound(left_.begin(), left_.end(), name, is_before) - left_.begin());
     begun_ = true;
     while (!left_.empty() && is_before(left_.front(), name)) left_ = left_.subspan(1);
-    return !left_.empty() && left_.front().pair == name && left_.front().gap < pair.d_hat ? &left_.front() : nullptr;
+    return !left_.empty() && left_.front().name == name && left_.front().gap < pair.d_hat ? &left_.front() : nullptr;
 }
 
 } // namespace ringlet

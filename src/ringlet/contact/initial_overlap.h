@@ -9,7 +9,7 @@
 namespace ringlet {
 
 struct InitialOverlap {
-    uint64_t pair;     // its name
+    uint64_t name;     // of the pair
     double gap;        // how close the pair began [m]; grows as it parts
     double force;      // normal force there [N]
     double activation; // distance at which it pushes from now on [m]

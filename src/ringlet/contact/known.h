@@ -11,14 +11,14 @@ void for_known(Known &known, Found &found, const NameOf &name_of, const Work &wo
     auto next = known.begin();
     for (auto &now : found) {
         const uint64_t name = name_of(now);
-        while (next != known.end() && next->pair < name) ++next;
+        while (next != known.end() && next->name < name) ++next;
         if (next == known.end()) return;
-        if (next->pair == name) work(*next, now);
+        if (next->name == name) work(*next, now);
     }
 }
 
 template <class Known, class Found, class Work> void for_known(Known &known, Found &found, const Work &work) {
-    for_known(known, found, [](const auto &now) { return now.pair; }, work);
+    for_known(known, found, [](const auto &now) { return now.name; }, work);
 }
 
 } // namespace ringlet

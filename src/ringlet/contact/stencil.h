@@ -21,7 +21,18 @@ inline uint64_t pair_of(uint64_t contact_name) { return contact_name & ~uint64_t
 struct Stencil {
     std::array<int, 4> vertex;
     std::array<double, 4> weight; // sum to 1 over the first primitive, to −1 over the second
-    int first;                    // vertices of the first primitive
+    int first;                    // vertices of the first primitive: 2 of an edge, 1 of a point
+
+    bool edge_edge() const { return first == 2; }
+
+    // Which of the four are on the same side as one of them: the first, and their end.
+    std::array<int, 2> side_of(int one) const { return one < first ? std::array{0, first} : std::array{first, 4}; }
+
+    Vec3 separation(View<Vec3> positions) const { // c_a − c_b of the closest points = Σ wᵢ xᵢ
+        Vec3 sum = Vec3::Zero();
+        for (int i = 0; i < 4; ++i) sum += weight[i] * positions[vertex[i]];
+        return sum;
+    }
 };
 
 Stencil stencil(const CollisionMesh &mesh, const ContactPair &pair, const ClosestPoints &closest);

@@ -14,7 +14,7 @@ bool ContactStiffness::raise_loads(const ContactSet &contacts) {
     const std::vector<Contact> &all = contacts.contacts();
     bool raised = false;
     for (size_t k = 0; k < all.size(); ++k)
-        for (const int v : all[k].vertex) {
+        for (const int v : all[k].at.vertex) {
             const double force = contacts.lagged_forces()[k].force / all[k].loaded_fraction;
             if (force > load_[v]) load_[v] = force, raised = true;
         }

@@ -55,7 +55,7 @@ SceneData::SceneData(const StrandModel &model_, StrandState &state_, const std::
         bodies.push_back({vertices.bodies[b], int(bodies_[b].rest.size()), vertices.objects + b, bodies_[b].triangles});
     objective.contacts.ties = contact_.ties;
     for (const Tie &tie : contact_.ties)
-        for (const int v : tie.vertex)
+        for (const int v : tie.at.vertex)
             if (v < 0 || v >= vertices.strand_vertices()) throw std::invalid_argument("scene: ties join vertices of strands");
     exempt_coincident_pairs();
 }
@@ -186,6 +186,6 @@ void Scene::recall(const SceneMemory &memory) {
 
 View<Vec3> Scene::positions() const { return data_->configuration.positions; }
 int Scene::dynamic_vertices() const { return data_->vertices.dynamic_vertices; }
-View<Contact> Scene::contacts() const { return data_->objective.contacts.without_ties(); }
+View<Contact> Scene::contacts() const { return data_->objective.contacts.contacts(); }
 
 } // namespace ringlet

@@ -81,7 +81,7 @@ public:
 
     View<Vec3> positions() const;   // of all vertices: strands, cloths, bodies
     int dynamic_vertices() const;   // those of strands and cloths
-    View<Contact> contacts() const; // of the last step, without ties
+    View<Contact> contacts() const; // of the last step
 
 private:
     std::unique_ptr<struct SceneData> data_;

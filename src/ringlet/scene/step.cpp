@@ -42,7 +42,7 @@ std::vector<int> most_touched_bodies(const SceneData &scene) {
     const int bodies = int(scene.bodies.size()), cloths = int(scene.cloths.size());
     std::vector<int> contacts(size_t(bodies) * cloths, 0), touched(cloths, -1);
     for (const Contact &c : scene.objective.contacts.contacts()) {
-        const auto [one, other] = std::minmax(vertices.mesh.object[c.vertex[0]], vertices.mesh.object[c.vertex[3]]);
+        const auto [one, other] = std::minmax(vertices.mesh.object[c.at.vertex[0]], vertices.mesh.object[c.at.vertex[3]]);
         if (one >= vertices.strands && one < vertices.objects && other >= vertices.objects)
             ++contacts[size_t(one - vertices.strands) * bodies + other - vertices.objects];
     }
@@ -130,7 +130,7 @@ void commit(SceneData &scene, View<Vec3> start, double dt, const SolverEffort &e
     report.newton = effort.iterations;
     report.residual = effort.residual;
     report.unconverged = !effort.converged;
-    report.contacts = double(contacts.without_ties().size());
+    report.contacts = double(contacts.contacts().size());
 }
 
 } // namespace
@@ -168,8 +168,8 @@ SceneReport take_step(SceneData &scene, const SceneInput &input, const SceneStep
     for (const auto &[vertex, target] : scene.lagging)
         report.lag = std::max(report.lag, (scene.configuration.positions[vertex] - target).norm());
     report.closest = std::numeric_limits<double>::infinity();
-    for (const Contact &c : scene.objective.contacts.without_ties())
-        report.closest = std::min(report.closest, separation(c, scene.configuration.positions).norm());
+    for (const Contact &c : scene.objective.contacts.contacts())
+        report.closest = std::min(report.closest, c.at.separation(scene.configuration.positions).norm());
     return report;
 }
 

@@ -20,7 +20,7 @@ AssembledMatrix::AssembledMatrix(const Objective &objective) : objective_(object
             }
     }
     for (const Couplings::Coupling &coupling : objective.couplings.all())
-        add_couplings(objective.contacts.contacts()[coupling.contact], objective.contact_values()[coupling.contact].hessian);
+        add_couplings(objective.contacts.stencil_of(coupling.pair), objective.pair_values()[coupling.pair].hessian);
 }
 
 double *AssembledMatrix::add_block(int row, int column) {
@@ -30,15 +30,15 @@ double *AssembledMatrix::add_block(int row, int column) {
     return values_.data() + values_.size() - size_t(block_) * block_;
 }
 
-// What a contact does from side to side; the rest is in the blocks.
-void AssembledMatrix::add_couplings(const Contact &c, const Mat3 &hessian) {
+// What a pair force does from side to side; the rest is in the blocks.
+void AssembledMatrix::add_couplings(const Stencil &pair, const Mat3 &hessian) {
     const auto &moves = objective_.table.mesh.moves;
-    for (int i = 0; i < c.first; ++i)
-        for (int j = c.first; j < 4; ++j) {
-            if (!moves[c.vertex[i]] || !moves[c.vertex[j]] || c.weight[i] * c.weight[j] == 0.0) continue;
-            double *block = add_block(c.vertex[i], c.vertex[j]);
+    for (int i = 0; i < pair.first; ++i)
+        for (int j = pair.first; j < 4; ++j) {
+            if (!moves[pair.vertex[i]] || !moves[pair.vertex[j]] || pair.weight[i] * pair.weight[j] == 0.0) continue;
+            double *block = add_block(pair.vertex[i], pair.vertex[j]);
             for (int r = 0; r < 3; ++r)
-                for (int k = 0; k < 3; ++k) block[r * block_ + k] = c.weight[i] * c.weight[j] * hessian(r, k);
+                for (int k = 0; k < 3; ++k) block[r * block_ + k] = pair.weight[i] * pair.weight[j] * hessian(r, k);
         }
 }
 

@@ -25,7 +25,7 @@ public:
 
 private:
     int vertices() const { return objective_.table.dynamic_vertices; }
-    void add_couplings(const Contact &contact, const Mat3 &hessian);
+    void add_couplings(const Stencil &pair, const Mat3 &hessian);
     template <class Work> void for_unknowns(const Work &work) const;
 
     const Objective &objective_;

@@ -65,11 +65,10 @@ public:
     virtual void assemble(const double *x, double *of_lanes) = 0;
     virtual const double *gradient() const = 0; // of all unknowns
 
-    // Adds what contacts do at a vertex, within its side of each, to gradient and Hessian. `values` are those of the contacts.
-    virtual void add_contacts(int vertex, const ContactSet &contacts, View<ContactValue> values) = 0;
-
-    // Adds a spring that pulls a vertex along n: its force [N], and its stiffness [N/m].
-    virtual void add_spring(int vertex, const Vec3 &n, double force, double stiffness) = 0;
+    // Add forces from outside to what is assembled: to the gradient at a vertex; to the Hessian a block of one vertex, or of
+    // two that share an edge or a triangle, row ≥ column.
+    virtual void add_gradient(int vertex, const Vec3 &gradient) = 0;
+    virtual void add_block(int row, int column, const Mat3 &block) = 0;
 
     virtual void add_to(MatrixAssembly &matrix) const = 0; // the Hessian, before it is factored
 

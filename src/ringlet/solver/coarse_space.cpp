@@ -57,7 +57,7 @@ void CoarseSpace::find_forces() {
     forces_.assign(couplings.count(), Columns::Zero());
     responses_.assign(couplings.count(), Columns::Zero());
     for (const Couplings::Coupling &coupling : couplings.all()) {
-        const Mat3 &hessian = objective_.contact_values()[coupling.contact].hessian;
+        const Mat3 &hessian = objective_.pair_values()[coupling.pair].hessian;
         for (int side = 0; side < 2; ++side) {
             const int object = coupling.objects[side];
             if (!has(object)) continue;
@@ -168,7 +168,7 @@ CoarseSpace::Row CoarseSpace::row(int a) const {
     for (const int k : couplings_.of(a)) {
         const Couplings::Coupling &coupling = objective_.couplings.all()[k];
         const int here = aggregate_[coupling.objects[0]] == a ? 0 : 1, b = aggregate_[coupling.objects[1 - here]];
-        const Columns force = objective_.contact_values()[coupling.contact].hessian * response_of_side(coupling, 1 - here);
+        const Columns force = objective_.pair_values()[coupling.pair].hessian * response_of_side(coupling, 1 - here);
         const Factor::Block product = response_of_side(coupling, here).transpose() * force;
         if (b == a)
             diagonal += product + product.transpose();

@@ -17,25 +17,22 @@ void ContactEnergy::remove(View<unsigned char> changed) {
 }
 
 void ContactEnergy::measure_kept(View<Vec3> positions, View<unsigned char> changed) {
-    const std::vector<Contact> &all = contacts_.contacts();
 #pragma omp parallel for schedule(static)
-    for (int k = 0; k < int(all.size()); ++k)
+    for (int k = 0; k < contacts_.count(); ++k)
         if (const auto [a, b] = objects_[k]; either(changed, a, b))
-            kept_[k] = kept_energy(all[k], separation(all[k], positions));
+            kept_[k] = contacts_.kept_energy(k, contacts_.stencil_of(k).separation(positions));
 }
 
 void ContactEnergy::at_linearisation(View<Vec3> positions, View<unsigned char> active) {
-    const std::vector<Contact> &all = contacts_.contacts();
-    objects_.resize(all.size());
-    kept_.assign(all.size(), 0.0);
+    objects_.resize(contacts_.count());
+    kept_.assign(contacts_.count(), 0.0);
 #pragma omp parallel for schedule(static)
-    for (int k = 0; k < int(all.size()); ++k)
-        objects_[k] = {table_.object_of(all[k].vertex[0]), table_.object_of(all[k].vertex[3])};
+    for (int k = 0; k < contacts_.count(); ++k) objects_[k] = table_.objects_of(contacts_.stencil_of(k));
     remove(active);
-    const View<Contact> without_ties = contacts_.without_ties();
-    const std::vector<Shared> of_active = collect<Shared>(int(without_ties.size()), [&](int k, std::vector<Shared> &barriers) {
+    const std::vector<Contact> &all = contacts_.contacts();
+    const std::vector<Shared> of_active = collect<Shared>(int(all.size()), [&](int k, std::vector<Shared> &barriers) {
         if (const auto [a, b] = objects_[k]; either(active, a, b))
-            barriers.push_back({a, b, barrier_energy(all[k], all[k].gap)});
+            barriers.push_back({a, b, all[k].barrier.energy_at(all[k].gap)});
     });
     barriers_.insert(barriers_.end(), of_active.begin(), of_active.end());
     measure_kept(positions, active);

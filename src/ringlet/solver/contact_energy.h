@@ -36,8 +36,8 @@ private:
     const VertexTable &table_;
     const ContactSet &contacts_;
     std::vector<Shared> barriers_;
-    std::vector<std::array<int, 2>> objects_; // of each contact, as in Shared
-    std::vector<double> kept_;                // of each contact: friction, or that of a tie [J]
+    std::vector<std::array<int, 2>> objects_; // of each pair, as in Shared
+    std::vector<double> kept_;                // of each pair: friction, or that of a tie [J]
 };
 
 } // namespace ringlet

@@ -88,7 +88,7 @@ void CoupledSystem::first_iterate(Residual &r, Unknowns &x) {
                 r[k] = -at(k, b, objective_.blocks[b].gradient());
         }
     });
-    couplings.multiply(d, objective_.contact_values(), all, unused);
+    couplings.multiply(d, objective_.pair_values(), all, unused);
     for_objects(all, [&](int, int first, int end) {
         for (int k = first; k < end; ++k) r[k] -= couplings.product(k);
     });
@@ -129,7 +129,7 @@ CoupledSystem::Numbers CoupledSystem::multiply(Unknowns &p, Residual &Ap, const 
         set_products(b, p.at, p.force, pPp_);
     });
     Numbers curvature = of_clusters(pPp_);
-    couplings.multiply(p.at, objective_.contact_values(), busy, curvature);
+    couplings.multiply(p.at, objective_.pair_values(), busy, curvature);
     for_objects(busy, [&](int object, int first, int end) {
         flat(Ap, first, end) = flat(p.force, first, end);
         for (int k = first; k < end && couplings.couples(object); ++k) Ap[k] += couplings.product(k);
@@ -157,7 +157,7 @@ CoupledSystem::Numbers CoupledSystem::precondition(const Residual &r, Unknowns &
     for_busy(busy, [&](int b) { precondition_block(b, r, z); }, backwards_);
     if (!coarse_.empty()) {
         Numbers unused(clusters(), 0.0);
-        couplings.multiply(z.at, objective_.contact_values(), busy, unused);
+        couplings.multiply(z.at, objective_.pair_values(), busy, unused);
         coarse_.add_correction([&](int k) { return Vec3(-couplings.product(k)); }, z.at, z.force);
     }
     for_busy(busy, [&](int b) { set_products(b, r, z.at, rz_); });

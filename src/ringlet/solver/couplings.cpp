@@ -7,13 +7,12 @@
 namespace ringlet {
 
 void Couplings::find(const ContactSet &contacts, const VertexTable &table, const BlockSet &blocks) {
-    const std::vector<Contact> &all = contacts.contacts();
     couplings_.clear();
-    for (int k = 0; k < int(all.size()); ++k) {
-        const Contact &c = all[k];
-        const int a = table.object_of(c.vertex[0]), b = table.object_of(c.vertex[3]);
+    for (int pair = 0; pair < contacts.count(); ++pair) {
+        const Stencil &at = contacts.stencil_of(pair);
+        const auto [a, b] = table.objects_of(at);
         if (a >= 0 && b >= 0 && blocks.is_active(a) && blocks.is_active(b))
-            couplings_.push_back({k, c.first, {a, b}, {}, c.weight, {Vec3::Zero(), Vec3::Zero()}});
+            couplings_.push_back({pair, at.first, {a, b}, {}, at.weight, {Vec3::Zero(), Vec3::Zero()}});
     }
     join_clusters(table.objects);
     number_points(contacts, table, blocks);
@@ -33,11 +32,11 @@ void Couplings::join_clusters(int objects) {
 
 void Couplings::number_points(const ContactSet &contacts, const VertexTable &table, const BlockSet &blocks) {
     const auto for_coupled = [&](const auto &work) { // (coupling, which of its four, vertex)
-        for (int k = 0; k < int(couplings_.size()); ++k)
-            for (int i = 0; i < 4; ++i) {
-                const int v = contacts.contacts()[couplings_[k].contact].vertex[i];
-                if (table.mesh.moves[v] && couplings_[k].weight[i] != 0.0) work(k, i, v);
-            }
+        for (int k = 0; k < int(couplings_.size()); ++k) {
+            const Stencil &at = contacts.stencil_of(couplings_[k].pair);
+            for (int i = 0; i < 4; ++i)
+                if (table.mesh.moves[at.vertex[i]] && at.weight[i] != 0.0) work(k, i, at.vertex[i]);
+        }
     };
     constexpr int none = -1;
     std::vector<int> number(table.dynamic_vertices, none);
@@ -64,7 +63,7 @@ void Couplings::number_points(const ContactSet &contacts, const VertexTable &tab
               [&](const auto &work) { for_coupled([&](int k, int i, int v) { work(number[v], Role{k, i}); }); }};
 }
 
-void Couplings::multiply(View<Vec3> p, View<ContactValue> values, View<unsigned char> busy, std::vector<double> &of_clusters) {
+void Couplings::multiply(View<Vec3> p, View<PairValue> values, View<unsigned char> busy, std::vector<double> &of_clusters) {
     std::vector<double> curvatures(couplings_.size(), 0.0);
 #pragma omp parallel for schedule(static)
     for (int k = 0; k < int(couplings_.size()); ++k) {
@@ -73,7 +72,7 @@ void Couplings::multiply(View<Vec3> p, View<ContactValue> values, View<unsigned 
         Vec3 side[2] = {Vec3::Zero(), Vec3::Zero()};
         for (int i = 0; i < 4; ++i)
             if (c.point[i] >= 0) side[i >= c.first] += c.weight[i] * p[c.point[i]];
-        const Mat3 &hessian = values[c.contact].hessian;
+        const Mat3 &hessian = values[c.pair].hessian;
         c.products = {hessian * side[1], hessian * side[0]};
         curvatures[k] = 2.0 * side[0].dot(c.products[0]);
     }

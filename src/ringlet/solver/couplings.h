@@ -11,7 +11,7 @@ namespace ringlet {
 
 class Couplings {
 public:
-    // Takes those of the contacts that are between two active objects; the others stay.
+    // Takes the pairs between two active objects.
     void find(const ContactSet &contacts, const VertexTable &table, const BlockSet &blocks);
 
     bool couples(int object) const { return coupled_[object]; }
@@ -27,7 +27,7 @@ public:
     int object(int point) const { return points_.items()[point].object; }
 
     // Computes C p, p being given at the points, for busy objects; adds p · C p to the numbers of their clusters.
-    void multiply(View<Vec3> p, View<ContactValue> values, View<unsigned char> busy, std::vector<double> &of_clusters);
+    void multiply(View<Vec3> p, View<PairValue> values, View<unsigned char> busy, std::vector<double> &of_clusters);
     Vec3 product(int point) const { // C p there
         Vec3 product = Vec3::Zero();
         for (const auto &[coupling, as] : roles_.of(point)) {
@@ -38,13 +38,13 @@ public:
     }
 
     struct Coupling {
-        int contact, first;         // vertices of the first side
+        int pair, first;            // vertices of the first side
         std::array<int, 2> objects; // of the two sides
         std::array<int, 4> point;   // −1: prescribed, or of no weight
         std::array<double, 4> weight;
         std::array<Vec3, 2> products; // on the two sides
     };
-    const std::vector<Coupling> &all() const { return couplings_; } // in the order of contacts
+    const std::vector<Coupling> &all() const { return couplings_; } // in the order of pairs
 
 private:
     void join_clusters(int objects);

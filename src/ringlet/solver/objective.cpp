@@ -24,7 +24,7 @@ std::vector<double> Objective::contact_stiffness(double scale, double dt) const 
 
 void Objective::find_contacts(const std::vector<ContactPair> &pairs, View<Vec3> start, View<Vec3> positions, double damping) {
     contacts.find(table.mesh, table.material, pairs, start, positions, damping);
-    values_.resize(contacts.contacts().size());
+    values_.resize(contacts.count());
     couplings.find(contacts, table, blocks);
     touched_ = {size_t(blocks.count()), [&](const auto &work) {
                     for (const int v : contacts.vertices()) work(blocks.block_of(table.object_of(v)), v);
@@ -33,8 +33,8 @@ void Objective::find_contacts(const std::vector<ContactPair> &pairs, View<Vec3> 
 
 std::vector<unsigned char> Objective::with_touched(const std::vector<unsigned char> &objects) const {
     std::vector<unsigned char> all = objects;
-    for (const Contact &c : contacts.contacts()) {
-        const int a = table.object_of(c.vertex[0]), b = table.object_of(c.vertex[3]);
+    for (int pair = 0; pair < contacts.count(); ++pair) {
+        const auto [a, b] = table.objects_of(contacts.stencil_of(pair));
         if (a < 0 || b < 0) continue;
         if (objects[a]) all[b] = 1;
         if (objects[b]) all[a] = 1;
@@ -82,12 +82,9 @@ void Objective::exact_energies(const AlignedVector &x, const ReachablePairs &pai
 
 void Objective::linearise_contacts(const AlignedVector &x) {
     blocks.gather(x, positions_);
-    const std::vector<Contact> &all = contacts.contacts();
 #pragma omp parallel for schedule(static)
-    for (int k = 0; k < int(all.size()); ++k) {
-        values_[k] = contact_value(all[k], separation(all[k], positions_));
-        values_[k].hessian.diagonal().array() += all[k].damping;
-    }
+    for (int pair = 0; pair < contacts.count(); ++pair)
+        values_[pair] = contacts.value(pair, contacts.stencil_of(pair).separation(positions_));
 }
 
 void Objective::assemble(int block, const AlignedVector &x) {
@@ -95,11 +92,32 @@ void Objective::assemble(int block, const AlignedVector &x) {
     double energies[max_lanes] = {};
     of.assemble(blocks.of(block, x), energies);
     blocks.from_lanes(block, energies, own_energies_);
-    for (const int v : touched_.of(block)) of.add_contacts(v, contacts, values_);
+    for (const int v : touched_.of(block)) add_pair_forces(v, of);
     for (const RecoverySpring &spring : springs)
         if (blocks.block_of(table.object_of(spring.vertex)) == block)
-            if (const double depth = spring.depth(blocks.position(x, spring.vertex)); depth > 0.0)
-                of.add_spring(spring.vertex, spring.normal, spring.stiffness * depth, spring.stiffness);
+            if (const double depth = spring.depth(blocks.position(x, spring.vertex)); depth > 0.0) {
+                of.add_gradient(spring.vertex, -spring.stiffness * depth * spring.normal);
+                of.add_block(spring.vertex, spring.vertex, spring.stiffness * spring.normal * spring.normal.transpose());
+            }
+}
+
+// Of each pair what it does to the vertex, and by the vertex to those before it on the same side.
+void Objective::add_pair_forces(int vertex, Block &block) const {
+    Vec3 gradient = Vec3::Zero();
+    Mat3 diagonal = Mat3::Zero();
+    for (const auto &[pair, as] : contacts.of(vertex)) {
+        const Stencil &at = contacts.stencil_of(pair);
+        const auto &[energy, of_separation, hessian] = values_[pair];
+        const double weight = at.weight[as];
+        gradient += weight * of_separation;
+        diagonal += weight * weight * hessian;
+        const auto [first, end] = at.side_of(as);
+        for (int i = first; i < end; ++i)
+            if (const int other = at.vertex[i]; other < vertex && table.mesh.moves[other] && at.weight[i] != 0.0)
+                block.add_block(vertex, other, weight * at.weight[i] * hessian);
+    }
+    block.add_gradient(vertex, gradient);
+    block.add_block(vertex, vertex, diagonal);
 }
 
 void Objective::lag_normal_forces(const AlignedVector &direction) {
@@ -107,15 +125,15 @@ void Objective::lag_normal_forces(const AlignedVector &direction) {
 #pragma omp parallel for schedule(static)
     for (int k = 0; k < int(all.size()); ++k) {
         const Contact &c = all[k];
-        if (c.is_tie()) continue;
         Vec3 change = Vec3::Zero();
         for (int i = 0; i < 4; ++i)
-            if (table.mesh.moves[c.vertex[i]] && c.weight[i] != 0.0)
-                change += c.weight[i] * blocks.position(direction, c.vertex[i]);
+            if (table.mesh.moves[c.at.vertex[i]] && c.at.weight[i] != 0.0)
+                change += c.at.weight[i] * blocks.position(direction, c.at.vertex[i]);
+        const Barrier &push = c.barrier;
         const double most =
-            std::max(c.force, -c.stiffness * barrier(solver_settings::closest_gap * c.d_hat, c.d_hat, 0.0).first);
-        const Vec3 pushed = values_[k].hessian * change - c.damping * change;
-        contacts.set_lagged_force(k, std::min(std::max(0.0, c.force - c.normal.dot(pushed)), most));
+            std::max(c.force(), -push.stiffness * barrier(solver_settings::closest_gap * push.d_hat, push.d_hat, 0.0).first);
+        const Vec3 pushed = values_[k].hessian * change - c.damping.coefficient * change;
+        contacts.set_lagged_force(k, std::min(std::max(0.0, c.force() - push.normal.dot(pushed)), most));
     }
 }
 

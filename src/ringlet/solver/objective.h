@@ -47,7 +47,7 @@ public:
     void linearise_contacts(const AlignedVector &x);
     // Gradient and P of a block at x.
     void assemble(int block, const AlignedVector &x);
-    const std::vector<ContactValue> &contact_values() const { return values_; }
+    const std::vector<PairValue> &pair_values() const { return values_; }
     const Vec3 &position(int vertex) const { return positions_[vertex]; } // where energies or contacts were evaluated last
 
     // Lags the normal forces: those that the contacts' matrix gives at the end of the search direction, where all forces
@@ -55,11 +55,12 @@ public:
     void lag_normal_forces(const AlignedVector &direction);
 
 private:
+    void add_pair_forces(int vertex, Block &block) const;
     void evaluate(const AlignedVector &x, const std::vector<unsigned char> &changed);
     std::vector<unsigned char> active_among(const std::vector<unsigned char> &objects) const;
     void sum_energies(std::vector<double> &of_objects) const;
 
-    std::vector<ContactValue> values_;
+    std::vector<PairValue> values_;
     ContactEnergy contact_energy_;
     Lists<int> touched_;               // vertices that contacts act on, of blocks
     std::vector<double> own_energies_; // per object, without contacts

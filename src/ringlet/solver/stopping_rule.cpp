@@ -9,7 +9,7 @@ void StoppingRule::measure(const Objective &objective, const std::vector<double>
     const size_t objects = converged_.size();
     std::vector<unsigned char> small(objects, 1), before(objects, 1); // of clusters
     for (const Contact &contact : objective.contacts.contacts())
-        if (contact.damping > 0.0) small[cluster[objective.table.object_of(contact.vertex[0])]] = 0;
+        if (contact.damping.coefficient > 0.0) small[cluster[objective.table.object_of(contact.at.vertex[0])]] = 0;
     for (size_t o = 0; o < objects; ++o) {
         small[cluster[o]] &= largest[o] <= tolerance_;
         before[cluster[o]] &= converged_[o];

@@ -3,6 +3,7 @@
 
 #include "ringlet/collision/mesh.h"
 #include "ringlet/contact/material.h"
+#include "ringlet/contact/stencil.h"
 
 #include <vector>
 
@@ -17,6 +18,7 @@ struct VertexTable {
 
     int count() const { return int(mesh.object.size()); }
     int object_of(int vertex) const { return vertex < dynamic_vertices ? mesh.object[vertex] : -1; } // −1: of a body
+    std::array<int, 2> objects_of(const Stencil &pair) const { return {object_of(pair.vertex[0]), object_of(pair.vertex[3])}; }
 };
 
 } // namespace ringlet

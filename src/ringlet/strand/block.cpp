@@ -78,41 +78,20 @@ void StrandBlock::bend(const double *x, const double *straight, double *bend) co
     for (size_t i = 0; i < unknowns(); ++i) bend[i] -= x[i] + straight[i];
 }
 
-// Of an edge's contact, what it does to the vertex and, by the edge, to the next one.
-void StrandBlock::add_contacts(int v, const ContactSet &contacts, View<ContactValue> values) {
-    const int end = objects_[strand_of(v)].end;
-    const bool next_moves = v + 1 < end && !model_.held[v + 1];
-    Vec3 gradient = Vec3::Zero();
-    Mat3 diagonal = Mat3::Zero(), next = Mat3::Zero();
-    for (const ContactSet::Role &role : contacts.of(v)) {
-        const Contact &c = contacts.contacts()[role.contact];
-        const ContactValue &value = values[role.contact];
-        gradient += c.weight[role.as] * value.gradient;
-        diagonal += c.weight[role.as] * c.weight[role.as] * value.hessian;
-        const int other = role.as ^ 1; // of the same edge
-        if (c.edge_edge() && c.vertex[other] == v + 1 && next_moves)
-            next += c.weight[role.as] * c.weight[other] * value.hessian;
-    }
-    const size_t at = slot(v);
-    for (int i = 0; i < 3; ++i) system_.gradient[at + i * lanes_] += gradient[i];
-    add_block(v, v, diagonal);
-    if (next_moves) add_block(v + 1, v, next);
-}
-
-void StrandBlock::add_spring(int vertex, const Vec3 &n, double force, double stiffness) {
+void StrandBlock::add_gradient(int vertex, const Vec3 &gradient) {
     const size_t at = slot(vertex);
-    for (int i = 0; i < 3; ++i) system_.gradient[at + i * lanes_] -= force * n[i];
-    add_block(vertex, vertex, stiffness * n * n.transpose());
+    for (int i = 0; i < 3; ++i) system_.gradient[at + i * lanes_] += gradient[i];
 }
 
-void StrandBlock::add_block(int a, int b, const Mat3 &block) {
-    const int lane = strand_of(a), first = objects_[lane].first;
-    const int row = dofs_ * (a - first), column = dofs_ * (b - first);
-    for (int c = 0; c < 3; ++c)
-        for (int r = 0; r < 3; ++r) {
-            const int below = row + r - column - c; // only the lower half is stored
-            if (below >= 0) system_.matrix[(system_.layout.begin(column + c) + below) * lanes_ + lane] += block(r, c);
-        }
+void StrandBlock::add_block(int vertex, int other, const Mat3 &block) {
+    const int lane = strand_of(vertex), first = objects_[lane].first;
+    const int below = dofs_ * (vertex - other);
+    size_t diagonal = system_.layout.begin(dofs_ * (other - first));
+    for (int c = 0; c < 3; ++c) {
+        for (int r = below == 0 ? c : 0; r < 3; ++r) // only the lower half is stored
+            system_.matrix[(diagonal + below + r - c) * lanes_ + lane] += block(r, c);
+        diagonal += system_.layout.rows(c);
+    }
 }
 
 void StrandBlock::add_to(MatrixAssembly &matrix) const {

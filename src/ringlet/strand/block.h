@@ -23,8 +23,8 @@ public:
     void energies(const double *x, double *of_lanes) override;
     void assemble(const double *x, double *of_lanes) override;
     const double *gradient() const override { return system_.gradient; }
-    void add_contacts(int vertex, const ContactSet &contacts, View<ContactValue> values) override;
-    void add_spring(int vertex, const Vec3 &n, double force, double stiffness) override;
+    void add_gradient(int vertex, const Vec3 &gradient) override;
+    void add_block(int row, int column, const Mat3 &block) override;
     void add_to(MatrixAssembly &matrix) const override;
     void factor() override;
     void solve(double *b) const override;
@@ -41,8 +41,6 @@ private:
     PhasedStep &phases() const; // for a phase that needs scratch memory
     int strand_of(int vertex) const;
     size_t slot(int vertex) const;
-    // Adds a 3 × 3 block to rows of vertex a and columns of vertex b of a strand, b = a or a − 1.
-    void add_block(int a, int b, const Mat3 &block);
 
     const StrandModel &model_;
     StrandState &state_;
