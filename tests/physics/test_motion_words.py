@@ -140,6 +140,20 @@ def test_a_lock_that_falls_over_has_no_words():
     assert np.isnan(modes_of(strands, strands.positions.copy(), WEIGHT).swing().elastic).all()
 
 
+@pytest.mark.parametrize(("radius", "height"), [(4e-3, 0.065), (8e-3, 0.065), (4e-3, 0.0325)])
+def test_a_coil_that_stands_bounces_at_least_so_fast_whatever_its_stiffness(radius, height):
+    turn = 2 * np.pi * np.linspace(0.0, height / 6e-3, int(24 * height / 6e-3) + 1)
+    out = radius * np.minimum(1.0, turn / (2 * np.pi))
+    coil = Curves.from_list([np.c_[out * np.cos(turn), 6e-3 * turn / (2 * np.pi), out * np.sin(turn)]])
+    strands = Strands(coil, Material(), 3)
+    modes = modes_of(strands, coil.points.astype(np.float64), WEIGHT)
+    # It keeps half of its stiffness: F + G - F / 2 is positive.
+    least = eigh(-modes.weight[0], 0.5 * modes.flexibility[0], eigvals_only=True).max()
+    bounce = modes.bounce(least)
+    shown = np.sqrt((bounce.elastic + bounce.weight)[0]) / (2 * np.pi)
+    assert shown == pytest.approx(0.37 * np.sqrt(height) / radius, rel=0.03)
+
+
 def test_the_length_of_a_coil_is_its_rise():
     turn = 2 * np.pi * np.arange(97) / 12
     coil = Curves.from_list([np.c_[5e-3 * np.cos(turn), -6e-3 * turn / (2 * np.pi), 5e-3 * np.sin(turn)]])

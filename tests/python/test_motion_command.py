@@ -129,6 +129,27 @@ def test_words_that_locks_do_not_show_are_counted(example):
     assert any("8 of 8 locks do not show the settle that is asked" in note for note in notes)
 
 
+def test_locks_that_cannot_stand_are_named_with_what_would_help(example):
+    shot = asked(example, "bounce = 4", "integrator = 'bdf2'\nsubsteps = 3\n[rest]\nmode = 'equilibrium'")
+    assert run("loft", shot).exit_code == 0
+    motion = ringlet.motion_words(shot)
+    fallen = word(motion, "bounce").shown > 1.05 * 4
+    assert fallen.sum() > 1
+    [said] = [note for note in motion.notes if "cannot stand" in note]
+    assert f"{fallen.sum()} of 8 locks" in said and "such as lock " in said and "Ask for" in said
+    higher = float(said.split("Ask for ")[1].split(" Hz")[0])
+    assert higher == pytest.approx(np.percentile(word(motion, "bounce").shown[fallen], 90), rel=0.05)
+
+
+def test_a_simulation_is_held_against_what_was_asked(example):
+    shot, cache = asked(example, "bounce = 6"), example / "held_against.usdc"
+    shot.write_text(shot.read_text().replace("frames = [1, 4]", "frames = [1, 14]"))
+    assert run("sim", shot, "-o", cache).exit_code == 0
+    motion = ringlet.motion_words(shot, cache=cache)
+    near = np.abs(word(motion, "bounce").found / 6.0 - 1.0) <= 0.15
+    assert any(f"{near.sum()} of 8 locks show the bounce that is asked within 15 %" in note for note in motion.notes)
+
+
 def test_a_simulation_has_the_motion_that_words_ask_for(example):
     plain, moved = (ringlet.simulate(asked(example, words)).points[-1] for words in ("", "bounce = 6"))
     assert np.abs(plain - moved).max() > 1e-5

@@ -11,7 +11,7 @@ from ringlet.data.curves import Curves
 from ringlet.data.groom import GROOM, Groom
 from ringlet.data.mesh import Clip
 from ringlet.data.motion import MotionWords, Word
-from ringlet.motion import Words, advised_steps, seen_motion
+from ringlet.motion import HangingLocks, Words, advised_steps, seen_motion
 from ringlet.shot.shot import Shot
 from ringlet.sim.cores import Cores
 from ringlet.sim.hanging import hang
@@ -22,7 +22,9 @@ from ringlet.sim.shot_strands import ASKED, make_strands, steps_of, with_words
 Array = NDArray[np.float64]
 
 UNITS = {"bounce": "Hz", "settle": "s", "sag": "", "swing": "Hz"}
+SUCH_AS = 3  # locks that a sentence names
 AGREES = 0.05  # deviation from what was asked that is none, relative to it
+NEAR = 0.15  # deviation from it in a simulation, where contact and swings disturb what is found
 KEPT = 0.8  # part of its own time to settle that a bounce keeps at the advised steps, and that is enough
 
 
@@ -51,20 +53,25 @@ def words_of_shot(
     steps = steps_of(shot, clip.fps)
     shown, by_itself = hanging.words(steps), hanging.words()
     seen = simulated and seen_motion(groom.locks, simulated, shot.forces.gravity, clip.fps)
-    words = list[Word]()
+    words, unmet, came_out, ids = list[Word](), list[str](), list[str](), locks.ids
+    made_to_stand = np.zeros(len(locks), bool) if stiffened is None else np.asarray(stiffened) > 1.0
     for group, of_all, of_simulated in _groups(groom, locks):
         for name, unit in UNITS.items():
             word = Word(group, name, unit, shown=getattr(shown, name)[of_simulated])
             if (asked := locks.curve.get(f"{ASKED}{name}")) is not None:
                 word.asked = asked[of_simulated]
+                falls = made_to_stand | _falls_when_softer(hanging, asked / getattr(shown, name))
+                unmet += _unmet(word, falls[of_simulated] & (unit == "Hz"), ids[of_simulated])
             if name != "sag":
                 word.by_itself = getattr(by_itself, name)[of_simulated]
             if seen and name in ("bounce", "settle"):
                 word.found = getattr(seen, name)[of_all]
+                if asked is not None:
+                    came_out += _came_out(word, asked[cores.simulated][of_all])
             words.append(word)
         if seen:
             words += [Word(group, name, "", found=getattr(seen, name)[of_all]) for name in ("opens", "closes")]
-    return MotionWords(words, [*_unmet(words), *_notes(shot, clip, shown, by_itself)])
+    return MotionWords(words, [*came_out, *unmet, *_notes(shot, clip, shown, by_itself)])
 
 
 def _groups(groom: Groom, simulated: Curves) -> list[tuple[str, NDArray[np.bool_], NDArray[np.bool_]]]:
@@ -76,14 +83,44 @@ def _groups(groom: Groom, simulated: Curves) -> list[tuple[str, NDArray[np.bool_
     ]
 
 
-def _unmet(words: list[Word]) -> Iterable[str]:
-    """Sentences about words that some locks do not show as asked."""
-    for word in words:
-        if word.asked.size and (off := ~(np.abs(word.shown / word.asked - 1.0) <= AGREES)).any():
-            yield (
-                f"{off.sum()} of {off.size} {word.group} do not show the {word.name} that is asked: they are pinned, "
-                f"bounce faster by their weight alone, or are settled sooner by the steps or the air."
-            )
+def _falls_when_softer(hanging: HangingLocks, slower: Array) -> NDArray[np.bool_]:
+    """Locks that would not stay in place if they were so much softer that frequencies are that much slower."""
+    softer = np.clip(np.nan_to_num(slower, nan=1.0), 1e-3, 1.0) ** 2
+    return np.isnan(hanging.modes.bounce(softer).elastic)
+
+
+def _unmet(word: Word, falls: NDArray[np.bool_], ids: NDArray[np.int64]) -> Iterable[str]:
+    """Sentences about locks that do not show a word as asked.
+
+    falls: whether each would fall over if it were so soft, shape (count,)
+    """
+    off = ~(np.abs(word.shown / word.asked - 1.0) <= AGREES)
+    fall = off & falls & (word.shown > word.asked)
+    if fall.any():
+        median, most = np.percentile(word.shown[fall], [50.0, 90.0])
+        yield (
+            f"{fall.sum()} of {off.size} {word.group} cannot stand at the {word.name} that is asked, such as lock "
+            f"{', '.join(str(lock) for lock in ids[fall][:SUCH_AS])}: as stiff as they must be to stand, they show "
+            f"{median:.3g} {word.unit}. Ask for {most:.2g} {word.unit}, at which nine in ten of them stand, or groom "
+            "wider or shorter coils: twice the width, or a quarter of the length, stands at half the bounce."
+        )
+    if (others := off & ~fall).any():
+        yield (
+            f"{others.sum()} of {off.size} {word.group} do not show the {word.name} that is asked: they are pinned, "
+            "bounce faster by their weight alone, hang out until they are straight, or are settled sooner by the steps "
+            "or the air."
+        )
+
+
+def _came_out(word: Word, asked: Array) -> Iterable[str]:
+    """A sentence about what a simulation showed of a word that was asked of each lock."""
+    known = ~np.isnan(word.found)
+    if known.any():
+        near = np.abs(word.found / asked - 1.0) <= NEAR
+        yield (
+            f"In the simulation {near.sum()} of {near.size} {word.group} show the {word.name} that is asked within "
+            f"{100.0 * NEAR:.0f} %; the median is {np.median(word.found[known]):.3g} {word.unit}."
+        )
 
 
 def _notes(shot: Shot, clip: Clip, shown: Words, by_itself: Words) -> Iterable[str]:
