@@ -243,3 +243,36 @@ def test_an_earlier_run_is_compared_by_wipe_and_the_chart_shows_its_swing(opened
     page.locator(".take", has_text="run 1").click()
     review.until("!ringlet.viewer.compared")
     assert not review.errors
+
+
+def test_words_of_motion_are_dragged_undone_saved_and_refused_beside_one_another(opened: Any, folder: Path):
+    shot = folder / "small.shot.toml"
+    shot.write_text(shot.read_text() + "[motion]\nbounce = 6\n")
+    review: Review = opened(shot.name, viewport={"width": 1280, "height": 900})
+    review.choose("shot:motion")
+    review.show_all_settings()
+    names = review.page.locator(".settings > .fields > .field").evaluate_all(
+        "all => all.map(one => one.dataset.setting)"
+    )
+    assert [name.removeprefix("motion.") for name in names] == list(
+        ringlet.schema()["shot"]["$defs"]["WantedMotion"]["properties"]
+    )
+    review.drag(review.slider("motion.bounce"), 0.3, 0.5)
+    review.until("ringlet.model.documents.shot.dirty")
+    dragged = tomllib.loads(review.text("shot"))["motion"]["bounce"]
+    assert dragged != 6
+    review.page.locator("main canvas").press("Control+z")
+    review.until("ringlet.model.documents.shot.text.includes('bounce = 6')")
+    review.unfold("motion.bounce")
+    review.page.locator('[data-setting="motion.bounce"] .varies summary').click()
+    review.page.locator('[data-setting="motion.bounce.of_hair"] input').click()
+    review.until("ringlet.model.documents.shot.text.includes('of_hair = true')")
+    field = review.page.locator('[data-setting="motion.sag"] > .field-head input.number')
+    field.fill("0.1")
+    field.press("Enter")
+    review.page.get_by_text("motion.sag is 0.1, but bounce is 6").wait_for()
+    assert field.input_value() == "" and "sag" not in review.text("shot")
+    review.page.get_by_role("button", name="Save", exact=True).click()
+    review.until("!ringlet.model.documents.shot.dirty")
+    assert tomllib.loads(shot.read_text())["motion"]["bounce"] == {"value": 6, "of_hair": True}
+    assert not review.errors

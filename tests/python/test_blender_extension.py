@@ -100,6 +100,16 @@ def test_every_value_of_a_recipe_is_a_setting_with_its_bounds(schema):
     assert [one for one in schema.operators()["clump"][1] if one.place == ("tightness", "value")]
 
 
+def test_every_table_of_a_shot_is_a_section_but_lists(schema):
+    shot = ringlet.schema()["shot"]
+    lists = {name for name, entry in shot["properties"].items() if entry.get("type") == "array"}
+    tables = {name for name, entry in shot["properties"].items() if "$ref" in str(entry)} - lists
+    assert set(schema.SECTIONS["shot"]) == tables
+    settings = {one.place: one for one in schema.sections("shot")["motion"][1]}
+    assert settings["bounce", "value"].default is None and settings["bounce", "of_hair"].kind == "boolean"
+    assert settings["weight", "ramp"].of == ("weight", "value")
+
+
 def test_the_pigments_of_cycles_absorb_as_those_of_ringlet():
     """Absorption of Cycles for concentrations of eumelanin and pheomelanin, from its source."""
     source = (blender.EXTENSION / "material.py").read_text().replace("import bpy\n", "").split("def with_pigments")[0]

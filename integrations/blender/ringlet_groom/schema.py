@@ -14,9 +14,9 @@ from typing import Any
 
 SECTIONS = {
     "recipe": ("guides", "locks", "curl", "hairs", "color", "fiber", "collide"),
-    "shot": ("strands", "contact", "solver", "forces", "rest"),
+    "shot": ("strands", "motion", "variation", "contact", "solver", "forces", "rest"),
 }
-VARIATION = ("vary", "noise", "noise_wavelength", "map", "ramp")  # of a value that differs from lock to lock
+VARIATION = ("of_hair", "vary", "noise", "noise_wavelength", "map", "ramp")  # of a value that differs from lock to lock
 DEPTH = 2  # tables in tables that are flattened
 
 
@@ -137,7 +137,7 @@ def _of_number(
         number = next((one for one in entry.get("anyOf", [entry]) if one.get("type") == "number"), {})
         yield Setting(
             (*where, name),
-            {"map": "text", "ramp": "ramp"}.get(name, "number"),
+            {"of_hair": "boolean", "map": "text", "ramp": "ramp"}.get(name, "number"),
             entry.get("description", ""),
             entry.get("unit", ""),
             number.get("minimum"),
