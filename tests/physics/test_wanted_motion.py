@@ -123,6 +123,24 @@ def test_air_settles_a_bounce():
     assert thick < 0.6 * calm
 
 
+@pytest.mark.parametrize(("preset", "kind"), [("tight_springs", "3C"), ("loose_ringlets", "3B"), ("heavy_wet", "3B"),
+    ("light_frizz", "4A"), ("stiff_braids", "3A"), ("locs", "3A"), ("afro", "4A")])  # fmt: skip
+def test_locks_show_the_character_of_a_preset(preset, kind):
+    scene = shot(f"{BDF2.replace('= 2', '= 8', 1)}[motion]\npreset = '{preset}'\n")
+    made = with_words(scene, groom(kind))
+    words = shown(scene, groom(kind))
+    assert scene.motion.given
+    for name in scene.motion.given:
+        assert getattr(words, name) == pytest.approx(made.locks.curve[f"asked_{name}"], rel=0.05)
+
+
+def test_what_is_given_counts_before_the_preset():
+    given = shot("[motion]\npreset = 'afro'\nweight = 2\nswing = 2\n").motion
+    assert (given.weight.value, given.settle.value, given.given) == (2.0, 0.3, ("swing", "settle"))
+    with pytest.raises(UserError, match="swing by its preset locs, which is given"):
+        shot("[strands]\nbend_scale = 2\n[motion]\npreset = 'locs'\n")
+
+
 def test_words_differ_from_lock_to_lock_by_chance_and_by_id():
     made = groom("3B", "3B", "3B")
     varied = f"[motion]\nbounce = {{ value = 4, vary = 0.3, lock = {{ {made.locks.ids[2]} = 5 }} }}\n"

@@ -261,7 +261,7 @@ FILES = [
     Advice("its locks are not those of the groom; simulate the shot again", in_order(changed(RECIPE,
         ("count = 8", "count = 7")), line(f"motion {SHOT} cache.usdc")), in_order(line(f"sim {SHOT} -o cache.usdc"),
         line(f"motion {SHOT} cache.usdc"))),
-    Advice("has {}, which is given instead of strands.{}; take one of them away", in_order(changed(SHOT,
+    Advice("has {}{}, which is given instead of strands.{}; take one of them away", in_order(changed(SHOT,
         ("preroll = 0", "preroll = 0\n[strands]\nbend_scale = 2\n[motion]\nbounce = 3")), line(f"motion {SHOT}")),
         in_order(changed(SHOT, ("bend_scale = 2", "")), line(f"motion {SHOT}"))),
     Advice("is {}, but {} is {}, and both say how stiff locks are; take one of them away", in_order(changed(SHOT,

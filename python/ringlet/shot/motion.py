@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
-from pydantic import Field, ValidationInfo, field_validator
+from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from ringlet.data.quantities import Quantity, Varied
 from ringlet.data.settings import Section, refuse
+from ringlet.shot.motion_presets import PRESETS, Preset
 from ringlet.shot.variation import Mapped
 
 # The words, and the settings of the material that each is given instead of.
 WORDS = {"bounce": "bend_scale", "sag": "bend_scale", "swing": "bend_scale", "settle": "damping"}
+STIFFNESS = ("bounce", "sag", "swing")  # words that each say how stiff locks are
 
 
 class Wanted(Varied):
@@ -31,6 +33,7 @@ class WantedMotion(Section):
     One of bounce, sag and swing is given; the stiffness with which a lock shows it decides the others.
     """
 
+    preset: Preset | None = Field(default=None, description="character of motion; fills what is not given here")
     bounce: Annotated[Wanted | None, Quantity("Hz", 0.05, 200.0)] = Field(
         default=None,
         description="[Hz] frequency of a lock along itself, from root to tip, instead of `strands.bend_scale`; by "
@@ -58,6 +61,16 @@ class WantedMotion(Section):
     )
     air: float = Field(default=1.0, ge=0.0, le=1e4, description="factor on the air drag of the locks, `strands.drag`")
     seed: int = Field(default=1, ge=0, le=2**31, description="another seed gives `vary` and `noise` other values")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_preset(cls, data: Any) -> Any:
+        if not isinstance(data, dict):
+            return data
+        preset = PRESETS.get(str(data.get("preset")), {})
+        if any(data.get(name) is not None for name in STIFFNESS):
+            preset = {name: value for name, value in preset.items() if name not in STIFFNESS}
+        return {**preset, **data}
 
     @field_validator("sag", "swing")
     @classmethod

@@ -87,7 +87,8 @@ class Shot(Section):
         given = info.data["strands"].model_fields_set if "strands" in info.data else ()
         for word in motion.given:
             if (setting := WORDS[word]) in given:
-                raise refuse(f"has {word}, which is given instead of strands.{setting}; take one of them away")
+                by = f" by its preset {motion.preset}" if motion.preset else ""
+                raise refuse(f"has {word}{by}, which is given instead of strands.{setting}; take one of them away")
         return motion
 
     @field_validator("rest")
