@@ -247,7 +247,7 @@ def test_an_earlier_run_is_compared_by_wipe_and_the_chart_shows_its_swing(opened
 
 def test_words_of_motion_are_dragged_undone_saved_and_refused_beside_one_another(opened: Any, folder: Path):
     shot = folder / "small.shot.toml"
-    shot.write_text(shot.read_text() + "[motion]\nbounce = 6\n")
+    shot.write_text(shot.read_text() + "[solver]\nintegrator = 'bdf2'\nsubsteps = 4\n[motion]\nbounce = 6\n")
     review: Review = opened(shot.name, viewport={"width": 1280, "height": 900})
     review.choose("shot:motion")
     review.show_all_settings()
@@ -261,6 +261,10 @@ def test_words_of_motion_are_dragged_undone_saved_and_refused_beside_one_another
     review.until("ringlet.model.documents.shot.dirty")
     dragged = tomllib.loads(review.text("shot"))["motion"]["bounce"]
     assert dragged != 6
+    review.get("ringlet.lock.choose(0)")
+    review.page.get_by_text(f"bounce {dragged:.3g} Hz, settles").wait_for()
+    said = review.page.get_by_label("Motion of this lock").inner_text()
+    assert re.fullmatch(r"bounce .* Hz, settles in .* s, swing .* Hz, sag .* %, .* times as stiff as hair", said)
     review.page.locator("main canvas").press("Control+z")
     review.until("ringlet.model.documents.shot.text.includes('bounce = 6')")
     review.unfold("motion.bounce")

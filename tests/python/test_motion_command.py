@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 from commands import edit, refused, run
+from ringlet.sim.motion_words import describe_lock
 from small_example import write_example
 
 import ringlet
@@ -127,6 +128,15 @@ def test_what_is_asked_stands_beside_what_is_shown(example):
 def test_words_that_locks_do_not_show_are_counted(example):
     notes = ringlet.motion_words(asked(example, "settle = 30")).notes
     assert any("8 of 8 locks do not show the settle that is asked" in note for note in notes)
+
+
+def test_a_lock_is_described_with_what_its_words_come_to(example):
+    shot = asked(example, "bounce = 6")
+    groom, settings = ringlet.load_groom(example / "small.recipe.toml"), ringlet.read_shot(shot)
+    said, swing = describe_lock(settings, groom, 3), word(ringlet.motion_words(shot), "swing").shown[3]
+    assert said.startswith("bounce 6 Hz, settles in ") and f"swing {swing:.3g} Hz" in said
+    held = settings.model_copy(update={"strands": settings.strands.model_copy(update={"twist_ratio": 0.0})})
+    assert "no bounce" in describe_lock(held.model_copy(update={"motion": type(held.motion)()}), groom, 3)
 
 
 def test_locks_that_cannot_stand_are_named_with_what_would_help(example):

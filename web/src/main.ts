@@ -223,6 +223,10 @@ class App {
         model.tell("numbers");
         if (model.settled) model.link?.sayAgain();
         break;
+      case "lock_motion":
+        model.lockMotion = message;
+        model.tell("lock_motion");
+        break;
       case "problems":
         model.problems = message.problems;
         model.tell("problems");

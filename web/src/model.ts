@@ -9,6 +9,7 @@ import type {
   FromPage,
   Guides,
   Json,
+  LockMotion,
   Measured,
   Names,
   Note,
@@ -38,6 +39,7 @@ type Topic =
   | "names"
   | "guides"
   | "numbers"
+  | "lock_motion"
   | "measured"
   | "timeline"
   | "compared"
@@ -63,6 +65,7 @@ export class Model {
   documents: Partial<Record<File, Document>> = {};
   role: Role = { kind: "role", leads: true, asked: false, asking: "", asks: false, people: [] };
   numbers: Numbers | null = null;
+  lockMotion: LockMotion | null = null;
   names: Names = { kind: "names", regions: [], maps: [], vectors: [], curves: [] };
   guides: Guides | null = null;
   measured: Measured | null = null;

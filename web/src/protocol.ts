@@ -454,6 +454,12 @@ export interface StopRender {
   kind: "stop_render";
 }
 
+/** Requests the words of motion of a lock in the shot; replaces an earlier request that is still pending. */
+export interface AskMotion {
+  kind: "ask_motion";
+  lock: number;
+}
+
 /** Requests frames, the current one first; replaces earlier requests that are still pending. */
 export interface Watch {
   kind: "watch";
@@ -788,6 +794,13 @@ export interface Notice {
   message: string;
 }
 
+/** Words of motion of a lock, by its id, or why it has none. */
+export interface LockMotion {
+  kind: "lock_motion";
+  lock: number;
+  text: string;
+}
+
 /** The look of the leading page. */
 export interface Followed {
   kind: "followed";
@@ -929,6 +942,7 @@ export type FromPage =
   | UseRun
   | Render
   | StopRender
+  | AskMotion
   | Watch
   | TakeSnapshot
   | EditSnapshot
@@ -963,6 +977,7 @@ export type FromServer =
   | Saved
   | SharePage
   | Notice
+  | LockMotion
   | Followed
   | Pointer
   | Trouble

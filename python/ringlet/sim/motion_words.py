@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +18,7 @@ from ringlet.sim.cores import Cores
 from ringlet.sim.hanging import hang
 from ringlet.sim.motion import check_locks
 from ringlet.sim.roots import Roots
-from ringlet.sim.shot_strands import ASKED, make_strands, steps_of, with_words
+from ringlet.sim.shot_strands import ASKED, WANTED, make_strands, steps_of, with_words
 
 Array = NDArray[np.float64]
 
@@ -72,6 +73,25 @@ def words_of_shot(
         if seen:
             words += [Word(group, name, "", found=getattr(seen, name)[of_all]) for name in ("opens", "closes")]
     return MotionWords(words, [*came_out, *unmet, *_notes(shot, clip, shown, by_itself)])
+
+
+def describe_lock(shot: Shot, groom: Groom, row: int) -> str:
+    """The words of one lock as the steps of a shot show it without contact, and how stiff that makes it.
+
+    With a rest shape it hangs as groomed, with the stiffness that it has before it is stiffened to stand.
+    """
+    made = with_words(shot, replace(groom, locks=groom.locks.take(np.array([row]))))
+    strands, groomed = make_strands(shot, made), np.array(made.locks.points, np.float64)
+    strands.place(groomed)
+    hanging = hang(strands, groomed, shot.forces.gravity, settle=shot.rest.mode == "none")
+    words = hanging.words(steps_of(shot, groom.space.fps))
+    stiffer = shot.strands.bend_scale * made.locks.curve.get(WANTED["bend"], np.ones(1))[0]
+    if np.isnan(words.bounce[0]):
+        return "no bounce: it is pinned beyond its root, limp, or falls over"
+    return (
+        f"bounce {words.bounce[0]:.3g} Hz, settles in {words.settle[0]:.2g} s, swing {words.swing[0]:.3g} Hz, sag "
+        f"{100.0 * words.sag[0]:.2g} %, {stiffer:.2g} times as stiff as hair"
+    )
 
 
 def _groups(groom: Groom, simulated: Curves) -> list[tuple[str, NDArray[np.bool_], NDArray[np.bool_]]]:

@@ -27,6 +27,7 @@ from ringlet.viewer.keep.comparer import Comparer
 from ringlet.viewer.keep.reviewing import Reviewing
 from ringlet.viewer.keep.sharing import Sharer
 from ringlet.viewer.pages import Page, Pages
+from ringlet.viewer.play.lock_motion import LockMotions, Question
 from ringlet.viewer.play.playback import Playback
 from ringlet.viewer.project import Project
 from ringlet.viewer.publisher import Publisher
@@ -69,6 +70,7 @@ class Session:
         self._review = Reviewing(project, self.publisher, notice)
         self._comparer = Comparer(project, self.publisher, self._call)
         self._rendering, self._sharer = Rendering(project), Sharer(project)
+        self._motions = LockMotions()
         self._editing = Editing(self.publisher, self.pages, self.submit)
         self._disk = DiskChanges(
             project, self.publisher, self.problems, self._review, self._call, self._editing.edited, notice, self._record
@@ -154,6 +156,7 @@ class Session:
         self._grooming.stop(PATIENCE)
         self._comparer.stop(PATIENCE)
         self._sharer.stop(PATIENCE)
+        self._motions.stop(PATIENCE)
 
     def _finish(self) -> None:
         self._end_gesture()
@@ -248,6 +251,10 @@ class Session:
                 self._rendering.render(message, self._viewport, page.queue)
             case protocol.StopRender():
                 self._rendering.cancel(page.queue)
+            case protocol.AskMotion():
+                display = self._viewport.display
+                if self.files.mode == "shot" and display is not None:
+                    self._motions.ask(Question(self.files.shot, display.groom, message.lock, page.queue))
             case protocol.Watch():
                 page.queue.request(self._playback.frame_sources(message))
             case protocol.Share():

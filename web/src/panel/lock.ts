@@ -22,6 +22,7 @@ export class LockTool {
   private readonly falloff = h("input", { type: "range", min: 0.05, max: 0.8, step: 0.05, value: 0.3, id: "lock-falloff" });
   private readonly alone = h("input", { type: "checkbox", role: "switch", class: "switch", id: "lock-alone" });
   private readonly aloneLabel = h("label", { for: "lock-alone", title: "Settings on the right are those of the selected locks" });
+  private readonly motion = h("p", { class: "hint", "aria-label": "Motion of this lock", hidden: true });
   private readonly own = h("ul", { class: "own", "aria-label": "Values of this lock alone" });
   private readonly edited = h("ul", { class: "own", "aria-label": "Edited locks" });
   private readonly lasso = document.createElementNS(NS, "polyline");
@@ -30,6 +31,8 @@ export class LockTool {
   private held = -1;
   private gesture = 0;
   private sending = 0;
+  /** The lock and the shot whose motion was asked for last. */
+  private asked = "";
   /** Whether another tool has the pointer. */
   busy = () => false;
 
@@ -51,6 +54,7 @@ export class LockTool {
         this.aloneLabel,
         this.alone,
       ),
+      this.motion,
       this.own,
       this.edited,
     );
@@ -72,6 +76,8 @@ export class LockTool {
     });
     model.on("document", () => this.update());
     model.on("role", () => this.update());
+    model.on("numbers", () => this.askMotion());
+    model.on("lock_motion", () => this.showMotion());
   }
 
   private get row(): number {
@@ -117,6 +123,22 @@ export class LockTool {
     this.alone.checked = alone;
     this.model.locks = alone ? this.ids : [];
     this.model.tell("chosen");
+  }
+
+  /** Asks for the words of motion of the lock that was chosen last, whenever it or the shot is another. */
+  private askMotion(): void {
+    const { shot } = this.model.documents;
+    const about = shot && this.id >= 0 ? `${this.id} ${this.model.numbers?.revision} ${shot.text}` : "";
+    if (about !== this.asked && about && this.model.numbers) this.model.say({ kind: "ask_motion", lock: this.id });
+    this.asked = about;
+    this.showMotion();
+  }
+
+  private showMotion(): void {
+    const { lockMotion } = this.model;
+    const known = this.asked && lockMotion?.lock === this.id;
+    this.motion.toggleAttribute("hidden", !known);
+    this.motion.textContent = known ? lockMotion!.text : "";
   }
 
   /** What was given to the chosen locks alone, each with a way to take it out of all of them. */
@@ -292,6 +314,7 @@ export class LockTool {
     this.element.querySelector(".falloff")!.toggleAttribute("hidden", !this.isolated);
     this.element.toggleAttribute("inert", !this.model.role.leads);
     this.tellOwn();
+    this.askMotion();
     this.place();
   }
 

@@ -309,6 +309,13 @@ class UseRun(Message):
     run: Row
 
 
+class AskMotion(Message):
+    """Requests the words of motion of a lock in the shot; replaces an earlier request that is still pending."""
+
+    kind: Literal["ask_motion"] = "ask_motion"
+    lock: Id
+
+
 class Watch(Message):
     """Requests frames, the current one first; replaces earlier requests that are still pending."""
 
@@ -355,6 +362,7 @@ FromPage = Annotated[
     | UseRun
     | Render
     | StopRender
+    | AskMotion
     | Watch
     | ReviewMessage,
     Field(discriminator="kind"),

@@ -34,6 +34,14 @@ class Welcome(Message):
     rigs: dict[str, Rig]
 
 
+class LockMotion(Message):
+    """Words of motion of a lock, by its id, or why it has none."""
+
+    kind: Literal["lock_motion"] = "lock_motion"
+    lock: int
+    text: str
+
+
 class Person(Message):
     """A person at a connected page.
 
