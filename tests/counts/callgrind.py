@@ -7,7 +7,6 @@ import re
 import subprocess
 import sys
 from collections import defaultdict
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 SHIM = """
@@ -16,7 +15,6 @@ void begin(void) { CALLGRIND_START_INSTRUMENTATION; CALLGRIND_ZERO_STATS; }
 void end(const char *name) { CALLGRIND_DUMP_STATS_AT(name); CALLGRIND_STOP_INSTRUMENTATION; }
 """
 
-PROCESSES = 2
 LONGEST = 120  # name of a function; those with the same beginning are counted as one
 
 # One thread and one instruction set everywhere.
@@ -31,20 +29,15 @@ SURROUNDINGS = {
 def counted(script: Path, folder: Path) -> dict[str, dict[str, int]]:
     """Instructions by function of the core, for each workload that the script runs between the requests of the shim.
 
-    The script runs in PROCESSES at once, each of which takes its share of the workloads.
     folder: for what callgrind writes
     """
     source, shim = folder / "shim.c", folder / "shim.so"
     source.write_text(SHIM)
     subprocess.run(["cc", "-shared", "-fPIC", "-O1", str(source), "-o", str(shim)], check=True)
 
-    def run(share: int) -> None:
-        options = ["--tool=callgrind", "--instr-atstart=no", f"--callgrind-out-file={folder / f'out{share}'}", "-q"]
-        workloads = [sys.executable, str(script), str(shim), str(share), str(PROCESSES)]
-        subprocess.run(["valgrind", *options, *workloads], env=os.environ | SURROUNDINGS, check=True)
-
-    with ThreadPoolExecutor(PROCESSES) as pool:
-        list(pool.map(run, range(PROCESSES)))
+    options = ["--tool=callgrind", "--instr-atstart=no", f"--callgrind-out-file={folder / 'out'}", "-q"]
+    workloads = [sys.executable, str(script), str(shim)]
+    subprocess.run(["valgrind", *options, *workloads], env=os.environ | SURROUNDINGS, check=True)
     counts = {}
     for dump in folder.glob("out*.*"):
         text = dump.read_text()

@@ -1,6 +1,7 @@
 """Small workloads whose cost is counted. Each prepares, yields, and then does what is counted.
 
-``python workloads.py SHIM SHARE SHARES`` runs one share under callgrind, which counts between two requests of the shim.
+``python workloads.py SHIM`` runs them under callgrind, which counts between two requests of the shim. All share one
+process, whose imports take a third of the time there.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ import ctypes
 import sys
 import tempfile
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +23,7 @@ import twirl
 from groom import recipe_text
 
 from ringlet import (
+    Groom,
     Memory,
     Solver,
     build_groom,
@@ -45,6 +48,12 @@ def recipe(width: float = 9.0):
     return read_recipe(path)
 
 
+@cache
+def groom() -> Groom:
+    """The groom of the recipe, made once."""
+    return build_groom(recipe())
+
+
 def coils_without_contact() -> Iterator[None]:
     """Coils that swing from a root frame."""
     yield
@@ -65,11 +74,11 @@ def wisps_in_contact() -> Iterator[None]:
 
 def nod() -> Iterator[None]:
     """A frame of the example head with hair in contact."""
-    groom = build_groom(recipe())
+    made = groom()
     path = FOLDER / "counted.shot.toml"
     path.write_text("ringlet = 2\ngroom = 'counted.recipe.toml'\n" + SHOT)
     yield
-    simulate(read_shot(path), groom)
+    simulate(read_shot(path), made)
 
 
 def nest() -> Iterator[None]:
@@ -92,7 +101,7 @@ def sheet_on_a_sphere() -> Iterator[None]:
 
 def cold_groom() -> Iterator[None]:
     """Recipe to hairs, with nothing remembered."""
-    build_hairs(build_groom(recipe()))  # loads what is loaded once
+    build_hairs(groom())  # loads what is loaded once
     yield
     build_hairs(build_groom(recipe()))
 
@@ -112,18 +121,17 @@ def slider() -> Iterator[None]:
 
 def warp_of_hairs() -> Iterator[None]:
     """Hairs after their locks have moved."""
-    groom = build_groom(recipe())
-    hair = build_hairs(groom)
+    made = groom()
+    hair = build_hairs(made)
     yield
-    hair.deformed(np.asarray(groom.locks.points) + 1e-3, groom.scalp.points)
+    hair.deformed(np.asarray(made.locks.points) + 1e-3, made.scalp.points)
 
 
 def groom_on_disk() -> Iterator[None]:
     """Writes a groom and reads it."""
-    groom = build_groom(recipe())
-    write_groom(groom, FOLDER / "first.usdc")
+    write_groom(groom(), FOLDER / "first.usdc")
     yield
-    write_groom(groom, FOLDER / "counted.usdc")
+    write_groom(groom(), FOLDER / "counted.usdc")
     read_groom(FOLDER / "counted.usdc")
 
 
@@ -143,8 +151,7 @@ IN_PYTHON = (nod, cold_groom, slider, groom_on_disk)
 
 if __name__ == "__main__":
     shim = ctypes.CDLL(sys.argv[1])
-    share, shares = map(int, sys.argv[2:])
-    for workload in IN_THE_CORE[share::shares]:
+    for workload in IN_THE_CORE:
         running = workload()
         next(running)
         shim.begin()
