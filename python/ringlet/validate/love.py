@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from functools import cache
 
 import numpy as np
-from scipy.optimize import root
+from scipy.optimize import root_scalar
 
 from ringlet.validate.case import Case, Row, convergence
 from ringlet.validate.rods import bending_stiffness, rod_material, strand
@@ -25,24 +25,17 @@ def theory(load: float) -> float:
     alpha0 = np.arctan2(PITCH, 2 * np.pi * RADIUS)
     curvature0, torsion0 = np.cos(alpha0) ** 2, np.sin(alpha0) * np.cos(alpha0)  # in 1 / R₀
 
-    def residual(unknown: np.ndarray) -> list[float]:
-        alpha, radius = unknown
-        bend = np.cos(alpha) ** 2 / radius - curvature0
-        twist = RATIO * (np.sin(alpha) * np.cos(alpha) / radius - torsion0)
-        return [
-            twist * np.sin(alpha) + bend * np.cos(alpha),
-            twist * np.cos(alpha) - bend * np.sin(alpha) - load * radius,
-        ]
+    def radius(alpha: float) -> float:  # of the first equation, in R₀
+        sine, cosine = np.sin(alpha), np.cos(alpha)
+        return cosine * (RATIO * sine**2 + cosine**2) / (RATIO * torsion0 * sine + curvature0 * cosine)
 
-    alpha = alpha0
-    radius = 1.0
-    for fraction in np.linspace(0, 1, 21)[1:]:  # continuation from the unloaded state
+    def residual(alpha: float) -> float:  # of the second, which rises from the unloaded coil to the straight one
+        sine, cosine, r = np.sin(alpha), np.cos(alpha), radius(alpha)
+        twist = RATIO * (sine * cosine / r - torsion0)
+        bend = cosine**2 / r - curvature0
+        return twist * cosine - bend * sine - load * r
 
-        def at(unknown: np.ndarray, fraction: float = fraction) -> list[float]:
-            first, second = residual(unknown)
-            return [first, second + (1 - fraction) * load * unknown[1]]
-
-        alpha, radius = root(at, (alpha, radius), tol=1e-13).x
+    alpha = root_scalar(residual, bracket=(alpha0, 0.5 * np.pi), xtol=1e-13).root
     return float(np.sin(alpha))
 
 
