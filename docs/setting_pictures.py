@@ -24,7 +24,7 @@ from ringlet.data.files import replacing
 from ringlet.groom.recipe import Recipe as GroomRecipe
 from ringlet.sim.strands import Strands
 
-from ringlet import Material, Mesh
+from ringlet import Material, Memory, Mesh
 from ringlet.groom import make_groom, make_hairs, parse_recipe, read_recipe
 
 RADIUS = 0.06  # of the dome [m]
@@ -154,12 +154,13 @@ def write_setting_pictures(schemas: dict[str, dict[str, Any]], folder: Path) -> 
     """
     folder.mkdir(exist_ok=True, parents=True)
     made: dict[tuple[str, str], str] = {}
+    memory = Memory()
     known: dict[tuple[str, View], Lines | None] = {}
 
     def curves(recipe: Recipe, view: View) -> Lines | None:
         text = tomlkit.dumps(recipe)
         if (text, view) not in known:
-            known[text, view] = drawn(text, view, hairs="hairs" in recipe)
+            known[text, view] = drawn(text, view, memory, hairs="hairs" in recipe)
         return known[text, view]
 
     def add(
@@ -253,13 +254,14 @@ def in_words(value: Any, unit: str) -> str:
     return f"{value:.3g}°" if unit == "deg" else f"{value:.3g}"
 
 
-def drawn(text: str, view: View, *, hairs: bool) -> Lines | None:
+def drawn(text: str, view: View, memory: Memory, *, hairs: bool) -> Lines | None:
     """Curves of a recipe, back to front, each of shape (n, 2) in a panel [pixels]; None for one that is refused."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "setting.recipe.toml"
         path.write_text(text)
         try:
-            groom = make_groom(read_recipe(path), dome(whole=view.ball) if view.dome else ceiling(view.width))
+            mesh = dome(whole=view.ball) if view.dome else ceiling(view.width)
+            groom = make_groom(read_recipe(path), mesh, memory=memory)
             curves = make_hairs(groom).curves if hairs else groom.locks
         except (UserError, ValueError, KeyError):
             return None
@@ -293,6 +295,7 @@ def hanging() -> GroomRecipe:
     return parse_recipe(tomlkit.dumps(HANGING | {"locks": {"count": 5, "points": 90}}))
 
 
+@cache
 def ceiling(width: float) -> Mesh:
     """A narrow sheet, drawn upside down, that locks hang from in a row."""
     x, z = 0.5 * width, 0.002
@@ -300,6 +303,7 @@ def ceiling(width: float) -> Mesh:
     return Mesh("ceiling", corners, np.array([[0, 1, 2], [0, 2, 3]], np.int32))
 
 
+@cache
 def dome(*, whole: bool) -> Mesh:
     """The upper half of a sphere about the origin, or nearly all of one, whose upper half is the region ``scalp``."""
     rings, sides = (15 if whole else 8), 24

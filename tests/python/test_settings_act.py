@@ -19,7 +19,7 @@ from ringlet.groom.recipe import Recipe
 from settings_walk import add, at, kinds, tables
 from shapes import ball
 
-from ringlet import Curves, UserError
+from ringlet import Curves, Memory, UserError
 from ringlet.groom import make_groom, make_hairs, parse_recipe
 
 BASE = """
@@ -263,10 +263,13 @@ def scalp():
     return made
 
 
+MEMORY = Memory()  # stages before the one with the setting are made once
+
+
 @cache
 def outcome(text: str) -> str:
     """A digest of all that a recipe makes: guides, locks, what they wear, pins and hairs."""
-    made = make_groom(parse_recipe(text), scalp())
+    made = make_groom(parse_recipe(text), scalp(), memory=MEMORY)
     hairs = make_hairs(made).curves
     worn = [part for one in made.accessories for part in (one.mesh.points, one.mesh.color)]
     return digest(*(part for curves in (made.guides, made.locks, hairs) for part in contents(curves)), *worn)
