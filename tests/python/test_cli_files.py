@@ -37,7 +37,7 @@ def printed(pipeline: Path, name: str) -> dict:
 
 
 def test_hairs_of_a_long_cache_are_made_with_a_few_frames_in_memory(pipeline, tmp_path):
-    groom, frames, hair = ringlet.read_groom(pipeline / "groom.usdc"), 1500, tmp_path / "hair.usdc"
+    groom, frames, hair = ringlet.read_groom(pipeline / "groom.usdc"), 500, tmp_path / "hair.usdc"
     points = carried(groom, FRAMES).astype(np.float32)  # the head stands still from there on
     shapes = np.broadcast_to(points, (frames, *points.shape))
     cache = ringlet.Cache(np.arange(FRAMES, FRAMES + frames, dtype=np.float64), shapes)
