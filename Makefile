@@ -2,6 +2,7 @@
 .DEFAULT_GOAL := help
 MAKEFLAGS += --no-builtin-rules
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
+unexport PYTHONDONTWRITEBYTECODE # else each of hundreds of processes compiles all that it imports
 
 python := .venv/bin/python
 # uv takes a fifth of the time of pip. It reads settings of its own: see docs/install.md.

@@ -34,10 +34,10 @@ step "C++ tests" cpp_tests
 # Beside the Python tests: at a lower priority they would end last, each on one processor.
 step "lints" tools/lint.sh &
 step "documents" tools/docs.sh &
+step "counts of instructions and calls" $bin/python -m pytest -rs tests/counts & # with valgrind, where there is one
 step "Python tests" pytests tests/python
 step "physics tests" pytests tests/physics
 step "browser tests" pytests -rs tests/browser # in headless Chromium; where there is none they are skipped, and say so
-step "counts of instructions and calls" $bin/python -m pytest -rs tests/counts # with valgrind, where there is one
 wait
 
 printf '\nThe slowest tests:\n'
