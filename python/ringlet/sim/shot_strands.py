@@ -82,16 +82,24 @@ def with_words(shot: Shot, groom: Groom, of_cores: Mapping[str, Array] | None = 
     if not given or WANTED["bend"] in groom.locks.curve:
         return groom
     steps, sags = steps_of(shot, groom.space.fps), shot.rest.mode == "none"
-    points = np.array(groom.locks.points, np.float64)  # where locks hang, as far as that is known
+    states: dict[
+        str, Array
+    ] = {}  # of all locks where they hang, as far as that is known: recalling is fast, placing not
 
     def hanging(which: Mask, bend: Array, settle: bool) -> HangingLocks:
-        """Some locks that are so many times stiffer."""
-        rows = np.repeat(which, groom.locks.counts)
+        """Some locks that are so many times stiffer; the first time all of them."""
+        vertices = np.repeat(which, groom.locks.counts)
+
+        def rows(of: Array) -> Mask:
+            return vertices if len(of) == len(vertices) else which
+
         part = _with_factors(replace(groom, locks=groom.locks.take(which)), bend, np.ones(len(bend)))
-        strands = make_strands(shot, part, of_cores={name: of[rows] for name, of in (of_cores or {}).items()})
-        strands.place(points[rows])
+        strands = make_strands(shot, part, of_cores={name: of[vertices] for name, of in (of_cores or {}).items()})
+        if states:
+            strands.recall({name: of[rows(of)] for name, of in states.items()})
         hung = hang(strands, part.locks.points, shot.forces.gravity, settle=settle, still=NEARLY_STILL)
-        points[rows] = strands.positions
+        for name, of in strands.memory.items():
+            states.setdefault(name, of)[rows(states[name])] = of
         return hung
 
     everything, ones = np.ones(len(groom.locks), bool), np.ones(len(groom.locks))
