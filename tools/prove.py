@@ -15,6 +15,8 @@ PAGE = ROOT / "docs/proofs.md"
 PROOFS = {  # commands that fail where a proof does
     "dense liveliness": ".venv/bin/python -m pytest tests/proof/test_dense_liveliness.py",
     "thousand frames": ".venv/bin/python -m pytest --timeout 0 tests/proof/test_thousand_frames.py",
+    "fine sphere": ".venv/bin/python -m pytest tests/proof/test_fine_sphere.py",
+    "long hair": ".venv/bin/python -m pytest tests/proof/test_long_hair.py",
     "sanitizers": "make sanitize",
     "wheel": "make wheel",
     "ARM64": "make arm",

@@ -9,7 +9,8 @@ from functools import cache
 
 import numpy as np
 import pytest
-from contact_scenes import SCENES, tightened
+from contact_scenes import SCENES as PROVED
+from contact_scenes import run_through, tightened
 from ringlet.data.curves import Curves
 from ringlet.shot import Material, Solver
 from ringlet.shot.contact import Contact
@@ -19,6 +20,7 @@ from ringlet.validate.friction import CREEP, STEP, on_a_slope
 from surfaces import sheet
 from trial import judged_run
 
+SCENES = PROVED | {"run_through": lambda: run_through(63, 101)}  # of 12 500 triangles; tests/proof has 50 000
 outcome = cache(lambda name, newton: judged_run(SCENES[name](), newton))
 
 

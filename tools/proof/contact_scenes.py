@@ -178,9 +178,8 @@ def spun_head():
     return Trial(scene, FRAME / 2, 24, lambda t: rest @ turned(t), lambda t: [head.points @ turned(t)])
 
 
-def run_through():
-    """Curls and a deforming sphere of 50 000 triangles that flies through them at 20 m/s."""
-    rows, columns = 125, 201
+def run_through(rows=125, columns=201):
+    """Curls and a deforming sphere, of 50 000 triangles by default, that flies through them at 20 m/s."""
     points, triangles = sphere(0.03, rows, columns)
     around = np.arctan2(points[:, 2], points[:, 0])
 
