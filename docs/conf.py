@@ -12,6 +12,7 @@ from benchmarks import write_benchmarks
 from docstrings import as_list
 from figures import write_figures
 from measured import Growth, Measured, Recorded
+from motion_figure import write_motion
 from plots import write_convergence, write_memory, write_release, write_tips
 from reference import write_references
 from theory import write_theory
@@ -46,6 +47,7 @@ def write_generated(folder):
         write_convergence: folder / "convergence.svg",
         write_release: folder / "release.svg",
         write_figures: folder,
+        write_motion: folder / "figure_motion.svg",
         write_memory: folder / "memory.svg",
         write_tips: folder / "tips.svg",
         write_benchmarks: folder / "benchmarks.md",

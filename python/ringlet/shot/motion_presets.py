@@ -1,7 +1,7 @@
 """Characters of motion. A preset gives the defaults of a shot's ``[motion]``, in the notation of a shot.
 
-They are chosen for the eye. Wet hair and frizz bounce as their material does at its weight. Braids and locs are no
-springs: how stiff they are shows in how the whole swings.
+They are chosen for the eye. Wet hair and frizz bounce as their material does at its weight. Braids, locs and an afro
+are no springs: how stiff they are shows in how the whole swings.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ PRESETS: dict[str, dict[str, Any]] = dict(
             {"settle": {"value": 0.25, "vary": 0.4}, "weight": 0.7, "air": 4.0},
             {"swing": {"value": 1.3, "of_hair": True}, "settle": 0.25, "weight": 1.2},
             {"swing": {"value": 1.6, "of_hair": True}, "settle": 0.2, "weight": 1.3},
-            {"bounce": {"value": 5.0, "noise": 0.1}, "settle": 0.3},
+            {"swing": {"value": 0.75, "of_hair": True, "noise": 0.1}, "settle": 0.3},
         ),
         strict=True,
     )
