@@ -326,7 +326,7 @@ def test_two_looks_are_shown_side_by_side(opened: Any):
 
 
 def test_colour_is_edited_and_shown(opened: Any):
-    review: Review = opened(pixels=0.5)
+    review: Review = opened(pixels=0.25)
     before = review.picture()
     review.choose("color")
     review.drag(review.slider("color.melanin"), 0.9, 0.4, 0.02)

@@ -12,7 +12,7 @@ from test_viewer_painting import unwrap
 
 def test_a_map_is_painted_and_a_parting_drawn_on_the_scalp(opened: Any, folder: Path):
     unwrap(folder)
-    review: Review = opened(viewport={"width": 1280, "height": 800}, pixels=0.5)
+    review: Review = opened(viewport={"width": 1280, "height": 800}, pixels=0.25)
     page, mouse = review.page, review.page.mouse
     review.choose("guides")
     page.locator('[data-setting="guides.length"] summary', has_text="varies").click()

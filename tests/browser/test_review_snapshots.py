@@ -38,7 +38,7 @@ def look_of(review: Review, *order: str) -> np.ndarray:
 
 
 def test_a_snapshot_is_taken_compared_loaded_noted_and_deleted(opened: Any, folder: Path):
-    review: Review = opened(viewport={"width": 1280, "height": 800}, pixels=0.5)
+    review: Review = opened(viewport={"width": 1280, "height": 800}, pixels=0.25)
     page = review.page
     first = review.picture()
     page.keyboard.press("t")
