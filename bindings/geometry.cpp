@@ -35,7 +35,8 @@ nb::tuple bind_roots(const Array3<double> &points, const Array3<int> &triangles,
     std::vector<double> distance(count);
     {
         nb::gil_scoped_release release;
-        const TriangleTree tree = allowed ? TriangleTree(mesh, view(*allowed)) : TriangleTree(mesh);
+        const TriangleTree tree =
+            allowed ? TriangleTree(mesh, {view(*allowed).begin(), view(*allowed).end()}) : TriangleTree(mesh);
 #pragma omp parallel for schedule(dynamic, 64)
         for (size_t i = 0; i < count; ++i) {
             const SurfacePoint found = tree.closest(places[i]);

@@ -1,5 +1,5 @@
 // The bounding volume hierarchy against all pairs of boxes.
-#include "ringlet/collision/bvh.h"
+#include "ringlet/geometry/bvh.h"
 
 #include <boost/test/unit_test.hpp>
 #include <random>

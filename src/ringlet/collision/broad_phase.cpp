@@ -1,40 +1,13 @@
 #include "ringlet/collision/broad_phase.h"
 
+#include "ringlet/geometry/overlaps.h"
+
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <type_traits>
 
 namespace ringlet {
 namespace {
-
-Traversal traversal(const Bvh &a, const Bvh &b, bool is_static) {
-    Traversal traversal;
-    traversal.a = a.nodes(), traversal.b = b.nodes(), traversal.one_tree = &a == &b, traversal.is_static = is_static;
-    traversal.left = traversal.found = 0;
-    return traversal;
-}
-
-// The pairs of nodes from which tasks descend.
-std::vector<NodePair> split(const Bvh &a, const Bvh &b, bool is_static) {
-    std::vector<NodePair> pairs = {{{0, 0}}};
-    Traversal below = traversal(a, b, is_static);
-    for (bool split = true; split && pairs.size() < collision::traversal_tasks;) {
-        split = false;
-        std::vector<NodePair> finer;
-        for (const NodePair &pair : pairs)
-            if (a.is_leaf(pair.of[0]) && b.is_leaf(pair.of[1]))
-                finer.push_back(pair);
-            else {
-                split = true;
-                below.nodes[0] = pair, below.left = 1;
-                RINGLET_DISPATCH(traverse, below, 1);
-                finer.insert(finer.end(), below.nodes, below.nodes + below.left);
-            }
-        pairs = std::move(finer);
-    }
-    return pairs;
-}
 
 // Removes the pairs of edges that separated() reports, in order.
 template <class EdgePairs, class Separated>
@@ -167,12 +140,10 @@ void BroadPhase::search(const Bvh &tree_a, const A &all_a, const Bvh &tree_b, co
         Traversal here = traversal(tree_a, tree_b, boxes.is_static());
 #pragma omp for schedule(dynamic, 1)
         for (size_t task = 0; task < starts.size(); ++task) {
-            here.nodes[0] = starts[task];
-            for (here.left = 1; here.left > 0; here.found = 0) {
-                RINGLET_DISPATCH(traverse, here, std::numeric_limits<int>::max());
+            descend(here, starts[task], [&] {
                 if (std::is_same_v<A, B> && boxes.is_static()) cull_edges(tree_a, boxes, move, here);
                 for (int k = 0; k < here.found; ++k) take(here.boxes[k], found_[task]);
-            }
+            });
         }
     }
 }

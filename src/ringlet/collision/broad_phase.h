@@ -1,10 +1,10 @@
 // The broad phase: pairs of primitives whose AABBs overlap.
 #pragma once
 
-#include "ringlet/collision/bvh.h"
 #include "ringlet/collision/incidence.h"
 #include "ringlet/collision/mesh.h"
 #include "ringlet/collision/swept_boxes.h"
+#include "ringlet/geometry/bvh.h"
 
 #include <vector>
 

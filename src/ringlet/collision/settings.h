@@ -1,4 +1,4 @@
-// Constants that decide which pairs collision detection returns, and its speed.
+// Constants that decide which pairs collision detection returns.
 #pragma once
 
 namespace ringlet::collision {
@@ -9,14 +9,7 @@ inline constexpr double yield_fraction = 0.25;       // of the lengths over whic
 inline constexpr double least_d_hat_fraction = 0.01; // of the sum of their radii, at least: else rounding picks a side
 
 // Culling of candidate pairs.
-inline constexpr double impact_distance = 0.5;         // of d_hat: pairs that keep more have no impact
-inline constexpr double impact_reach = 0.6;            // of d_hat: culling for impacts is conservative
-inline constexpr float coordinate_rounding = 0x1p-20f; // of the largest coordinate, in single precision
-inline constexpr float time_rounding = 1e-6f;          // of the duration of a move
-
-// Bounding volume hierarchy.
-inline constexpr double rebuild_growth = 1.4; // of the leaf boxes since the last build
-inline constexpr int serial_nodes = 1 << 10;  // fewer are refitted by one thread
-inline constexpr int traversal_tasks = 256;   // at least, where there are as many: the same for any number of threads
+inline constexpr double impact_distance = 0.5; // of d_hat: pairs that keep more have no impact
+inline constexpr double impact_reach = 0.6;    // of d_hat: culling for impacts is conservative
 
 } // namespace ringlet::collision

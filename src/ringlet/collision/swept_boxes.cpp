@@ -40,7 +40,7 @@ void SweptBoxes::refit(const Move &move, View<int> vertices) {
 #pragma omp critical
         largest = largest.max(here);
     }
-    inflation_ = std::max(inflation_, collision::coordinate_rounding * largest.maxCoeff());
+    inflation_ = std::max(inflation_, bvh_settings::coordinate_rounding * largest.maxCoeff());
 }
 
 void SweptBoxes::fit(const Move &move, const Origin &origin, double margin) {

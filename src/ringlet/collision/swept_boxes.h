@@ -3,7 +3,7 @@
 
 #include "ringlet/collision/mesh.h"
 #include "ringlet/collision/separating_axis.h"
-#include "ringlet/collision/swept_box.h"
+#include "ringlet/geometry/swept_box.h"
 
 #include <vector>
 

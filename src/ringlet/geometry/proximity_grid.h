@@ -1,4 +1,5 @@
-// Grid of the cells within a distance of a mesh. It rejects far points without a closest-point query.
+// Grid of the cells within a distance of a mesh. It rejects far points without a closest-point query: with queries of the tree
+// alone, which look as far as pays, a groom after a slider takes 18 % more instructions.
 #pragma once
 
 #include "ringlet/geometry/triangle_mesh.h"

@@ -1,6 +1,7 @@
-// BVH of the triangles of a mesh, for closest-point and box queries.
+// The triangles of a mesh in a BVH, for closest-point and box queries.
 #pragma once
 
+#include "ringlet/geometry/bvh.h"
 #include "ringlet/geometry/triangle_mesh.h"
 
 #include <limits>
@@ -21,31 +22,21 @@ SurfacePoint closest_point(const TriangleMesh &mesh, int triangle, const Vec3 &p
 // Borrows the mesh, which must outlive it.
 class TriangleTree {
 public:
-    TriangleTree(const TriangleMesh &mesh, View<int> triangles); // over these triangles
-    explicit TriangleTree(const TriangleMesh &mesh);             // over all triangles
+    TriangleTree(const TriangleMesh &mesh, std::vector<int> triangles); // over these triangles
+    explicit TriangleTree(const TriangleMesh &mesh);                    // over all triangles
 
-    // Closest point within `within` [m] of p; the first triangle in the order of the tree wins a tie.
+    // Closest point within `within` [m] of p; of triangles at the same distance the first.
     SurfacePoint closest(const Vec3 &p, double within = std::numeric_limits<double>::infinity()) const;
     // Appends to `found` the triangles whose AABBs overlap the box.
     void overlapping(const Vec3 &low, const Vec3 &high, std::vector<int> &found) const;
     const TriangleMesh &mesh() const { return mesh_; }
 
 private:
-    struct Node {
-        Vec3 low, high;
-        int begin, count; // leaf: triangles order_[begin, begin + count); inner (count 0): children next to it and at begin
-    };
-    struct Sphere { // encloses a triangle
-        Vec3 centre;
-        double radius;
-    };
-    void build();
-    int build(int begin, int end);
+    std::array<Vec3, 2> bounds(int triangle) const;
 
     TriangleMesh mesh_;
-    std::vector<int> order_;
-    std::vector<Sphere> spheres_; // in this order
-    std::vector<Node> nodes_;
+    std::vector<int> triangles_;
+    Bvh tree_;
 };
 
 } // namespace ringlet

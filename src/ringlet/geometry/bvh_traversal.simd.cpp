@@ -1,6 +1,6 @@
-#include "ringlet/collision/bvh_traversal.h"
+#include "ringlet/geometry/bvh_traversal.h"
 
-#include "ringlet/collision/settings.h"
+#include "ringlet/geometry/settings.h"
 #include "ringlet/math/floats.h"
 
 namespace ringlet::RINGLET_SIMD {
@@ -70,7 +70,7 @@ unsigned overlap(const BoxQuad &a, const BoxQuad &b) {
 
 // Pairs that overlap along all three axes at one time.
 unsigned overlap_at_one_time(const BoxQuad &a, const EndQuad &end_a, const BoxQuad &b, const EndQuad &end_b) {
-    const Floats none = {}, one = none + 1.0f, never = none + 2.0f, rounding = none + collision::time_rounding;
+    const Floats none = {}, one = none + 1.0f, never = none + 2.0f, rounding = none + bvh_settings::time_rounding;
     unsigned which = 0;
     for (int chunk = 0; chunk < chunks; ++chunk) {
         Floats from = none, to = one;

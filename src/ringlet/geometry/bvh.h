@@ -1,9 +1,12 @@
 // A bounding volume hierarchy of swept AABBs: built once, then refitted as vertices move.
 #pragma once
 
-#include "ringlet/collision/swept_box.h"
+#include "ringlet/geometry/swept_box.h"
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace ringlet {
@@ -17,6 +20,13 @@ public:
 
     // Fits the tree to new boxes of some primitives, and of those that share their leaves.
     template <class Box> void refit(View<int> primitives, const Box &box);
+
+    // Calls visit(primitive) for those whose boxes, at the start, are within a distance of a place [m], nearer ones first as
+    // far as nodes tell. It returns the distance within which the search goes on.
+    template <class Visit> void for_near(const Vec3 &place, double within, const Visit &visit) const;
+
+    // Calls visit(primitive) for those whose boxes, at the start, overlap a box.
+    template <class Visit> void for_overlapping(const SweptBox &box, const Visit &visit) const;
 
     // Makes every box inactive until it is refitted.
     void deactivate() {
@@ -33,6 +43,8 @@ public:
     int builds() const { return builds_; }                                                       // so far
 
 private:
+    static constexpr int most_levels = 16; // of 2³¹ primitives
+
     struct Centre {
         float at[3];
         int primitive;
@@ -66,7 +78,7 @@ template <class Box> void Bvh::fit(int count, const Box &box) {
     if (count == 0) return;
     if (fresh) build(box);
     refit_all(box);
-    if (!fresh && leaf_extent() > collision::rebuild_growth * built_extent_) {
+    if (!fresh && leaf_extent() > bvh_settings::rebuild_growth * built_extent_) {
         build(box);
         refit_all(box);
         built_extent_ = leaf_extent();
@@ -98,13 +110,60 @@ template <class Box> void Bvh::refit_leaf(int leaf, const Box &box) {
 
 template <class Box> void Bvh::refit_all(const Box &box) {
     int first = first_leaf_, count = leaves();
-#pragma omp parallel for schedule(static) if (count_ > collision::serial_nodes)
+#pragma omp parallel for schedule(static) if (count_ > bvh_settings::serial_nodes)
     for (int leaf = first; leaf < first + count; ++leaf) refit_leaf(leaf, box);
     while (first > 1) { // level by level
         first = (first - 1) / 4;
         count /= 4;
-#pragma omp parallel for schedule(static) if (count > collision::serial_nodes)
+#pragma omp parallel for schedule(static) if (count > bvh_settings::serial_nodes)
         for (int node = first; node < first + count; ++node) set(node, union_of(node));
+    }
+}
+
+template <class Visit> void Bvh::for_near(const Vec3 &place, double within, const Visit &visit) const {
+    struct Near {
+        float distance2;
+        int node; // or slot of a leaf
+        bool operator<(const Near &other) const { return distance2 < other.distance2; }
+    };
+    const auto rounded_up = [](double distance) { return float(distance * distance * (1.0 + 1e-6)); };
+    const Eigen::Array3f at = place.cast<float>();
+    float most = rounded_up(within);
+    std::array<Near, 4 * most_levels> stack;
+    int top = 0;
+    if (!empty()) stack[top++] = {0.0f, 0};
+    while (top > 0) {
+        const auto [distance2, node] = stack[--top];
+        if (distance2 > most) continue;
+        const Eigen::Array4f distances2 = ringlet::distances2(nodes_[node], at);
+        std::array<Near, 4> near;
+        int count = 0;
+        for (int k = 0; k < 4; ++k)
+            if (distances2[k] <= most && distances2[k] < std::numeric_limits<float>::infinity()) // no empty box
+                near[count++] = {distances2[k], is_leaf(node) ? 4 * node + k : child(node, k)};
+        std::sort(near.begin(), near.begin() + count);
+        if (!is_leaf(node)) {
+            while (count > 0) stack[top++] = near[--count];
+            continue;
+        }
+        for (int k = 0; k < count && near[k].distance2 <= most; ++k) most = rounded_up(visit(primitive(near[k].node)));
+    }
+}
+
+template <class Visit> void Bvh::for_overlapping(const SweptBox &box, const Visit &visit) const {
+    std::array<int, 4 * most_levels> stack;
+    int top = 0;
+    if (!empty()) stack[top++] = 0;
+    while (top > 0) {
+        const int node = stack[--top];
+        for (int k = 0; k < 4; ++k) {
+            const SweptBox here = box_of(nodes_[node], ends_[node], k);
+            if (!((here.low <= box.high).head<3>().all() && (here.high >= box.low).head<3>().all())) continue;
+            if (is_leaf(node))
+                visit(primitive(4 * node + k));
+            else
+                stack[top++] = child(node, k);
+        }
     }
 }
 
@@ -112,7 +171,7 @@ template <class Box> void Bvh::refit(View<int> primitives, const Box &box) {
     std::vector<int> leaves;
     for (const int i : primitives)
         if (!listed_[leaf_of_[i]]) listed_[leaf_of_[i]] = 1, leaves.push_back(leaf_of_[i]);
-#pragma omp parallel for schedule(static) if (int(leaves.size()) > collision::serial_nodes)
+#pragma omp parallel for schedule(static) if (int(leaves.size()) > bvh_settings::serial_nodes)
     for (size_t k = 0; k < leaves.size(); ++k) refit_leaf(leaves[k], box);
     refit_above(leaves);
 }

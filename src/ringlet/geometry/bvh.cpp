@@ -1,4 +1,4 @@
-#include "ringlet/collision/bvh.h"
+#include "ringlet/geometry/bvh.h"
 
 #include <algorithm>
 
@@ -9,7 +9,7 @@ void Bvh::arrange(std::vector<Centre> &centres) {
     depth_ = 0;
     while (count_ > int64_t(4) << depth_) ++depth_;
     for (int depth = 0; depth < depth_; ++depth) {
-#pragma omp parallel for schedule(dynamic, 1) if (count_ > collision::serial_nodes)
+#pragma omp parallel for schedule(dynamic, 1) if (count_ > bvh_settings::serial_nodes)
         for (int group = 0; group < 1 << depth; ++group) {
             const auto first = centres.begin() + begin(group, depth), last = centres.begin() + begin(group + 1, depth);
             Eigen::Array3f low = Eigen::Array3f::Constant(std::numeric_limits<float>::infinity()), high = -low;

@@ -1,8 +1,8 @@
 // A swept AABB: one box at the start of a linear motion and one at its end.
 #pragma once
 
-#include "ringlet/collision/bvh_traversal.h"
-#include "ringlet/collision/settings.h"
+#include "ringlet/geometry/bvh_traversal.h"
+#include "ringlet/geometry/settings.h"
 #include "ringlet/math/types.h"
 
 #include <algorithm>
@@ -22,6 +22,18 @@ struct SweptBox {
     static SweptBox empty() { // overlaps nothing
         const Eigen::Array4f infinite = Eigen::Array4f::Constant(std::numeric_limits<float>::infinity());
         return {infinite, -infinite, infinite, -infinite};
+    }
+
+    // A box that does not move, with room for rounding to single precision.
+    static SweptBox around(const Vec3 &low, const Vec3 &high) {
+        const double room =
+            bvh_settings::coordinate_rounding * std::max(low.lpNorm<Eigen::Infinity>(), high.lpNorm<Eigen::Infinity>());
+        SweptBox box;
+        box.low << (low.array() - room).cast<float>(), 0.0f;
+        box.high << (high.array() + room).cast<float>(), 0.0f;
+        box.end_low = box.low, box.end_high = box.high;
+        box.set_flags(true, true);
+        return box;
     }
 
     void include(const SweptBox &other) {
@@ -100,6 +112,17 @@ inline SweptBox box_of(const BoxQuad &quad, const EndQuad &end) {
             most(end.high)};
 }
 
+// The squared distances of a place from four boxes at the start; infinite of empty ones.
+inline Eigen::Array4f distances2(const BoxQuad &quad, const Eigen::Array3f &place) {
+    using Row = Eigen::Map<const Eigen::Array4f>;
+    Eigen::Array4f sum = Eigen::Array4f::Zero();
+    for (int axis = 0; axis < 3; ++axis) {
+        const Eigen::Array4f outside = (Row(quad.low[axis]) - place[axis]).max(place[axis] - Row(quad.high[axis])).max(0.0f);
+        sum += outside * outside;
+    }
+    return sum;
+}
+
 // Whether two boxes may overlap at one time: along no axis is there a gap at the start and, on the same side, at the end.
 inline bool may_overlap(const SweptBox &a, const SweptBox &b) {
     const Eigen::Array4f above = (b.low - a.high).min(b.end_low - a.end_high);
@@ -127,7 +150,7 @@ inline bool overlap_at_one_time(const SweptBox &a, const SweptBox &b, float less
         restrict_to(b.low[axis] - a.high[axis] + less, b.end_low[axis] - a.end_high[axis] + less);
         restrict_to(a.low[axis] - b.high[axis] + less, a.end_low[axis] - b.end_high[axis] + less);
     }
-    return from <= to + collision::time_rounding;
+    return from <= to + bvh_settings::time_rounding;
 }
 
 } // namespace ringlet
