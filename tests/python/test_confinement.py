@@ -158,7 +158,9 @@ def numbers_of(schema: dict, place: str):
 
 
 # Numbers whose bounds are those of the setting that they belong to, or that they stand for.
-BOUNDED_ELSEWHERE = {f"{of}.{name}" for of in ("Varied", "Ramped", "Mapped") for name in ("value", "region", "lock")}
+BOUNDED_ELSEWHERE = {
+    f"{of}.{name}" for of in ("Varied", "Ramped", "Mapped", "Wanted") for name in ("value", "region", "lock")
+}
 BOUNDED_ELSEWHERE |= {"Edit.set"}
 
 
