@@ -82,9 +82,8 @@ def with_words(shot: Shot, groom: Groom, of_cores: Mapping[str, Array] | None = 
     if not given or WANTED["bend"] in groom.locks.curve:
         return groom
     steps, sags = steps_of(shot, groom.space.fps), shot.rest.mode == "none"
-    states: dict[
-        str, Array
-    ] = {}  # of all locks where they hang, as far as that is known: recalling is fast, placing not
+    # Where all locks hang, as far as that is known: to recall it is fast, to place them not.
+    states: dict[str, Array] = {}
 
     def hanging(which: Mask, bend: Array, settle: bool) -> HangingLocks:
         """Some locks that are so many times stiffer; the first time all of them."""
