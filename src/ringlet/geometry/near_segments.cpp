@@ -36,8 +36,9 @@ std::vector<std::array<int, 2>> near_segments(const CurveView &curves, double wi
         for (size_t task = 0; task < starts.size(); ++task)
             descend(here, starts[task], [&] {
                 for (int n = 0; n < here.found; ++n) {
-                    const auto [i, j] = here.boxes[n].of;
-                    const auto [a, b] = std::minmax({segments[tree.primitive(i)], segments[tree.primitive(j)]});
+                    const int i = segments[tree.primitive(here.boxes[n].of[0])];
+                    const int j = segments[tree.primitive(here.boxes[n].of[1])];
+                    const int a = std::min(i, j), b = std::max(i, j);
                     if (curve[a] == curve[b] && (b - a < 2 || arc_length[b] - arc_length[a + 1] <= along)) continue;
                     if (closest_edge_edge(p[a], p[a + 1], p[b], p[b + 1]).distance2 < within * within) found.push_back({a, b});
                 }
