@@ -1,5 +1,6 @@
 #include "ringlet/geometry/orientation.h"
 
+#include "ringlet/geometry/sides.h"
 #include "ringlet/math/disjoint_sets.h"
 
 #include <algorithm>
@@ -13,14 +14,6 @@ namespace {
 constexpr double small_openings = 0.25; // area of openings of a surface with an inside, at most, relative to its own
 constexpr double thin = 1e-6;           // volume, relative to area^1.5, up to which a surface encloses nothing
 
-// A side of a triangle, from one place to another.
-struct Side {
-    int low, high; // places
-    int triangle;
-    int from, to; // points
-    bool rises;   // from low to high
-};
-
 // A number for each point, the same for those at one place.
 std::vector<int> numbered_places(const std::vector<Vec3> &points) {
     std::vector<int> order(points.size()), place(points.size());
@@ -30,21 +23,6 @@ std::vector<int> numbered_places(const std::vector<Vec3> &points) {
     for (size_t k = 1; k < order.size(); ++k)
         place[order[k]] = place[order[k - 1]] + (points[order[k]] != points[order[k - 1]]);
     return place;
-}
-
-// Sides in the order of their edges.
-std::vector<Side> sorted_sides(View<Triangle> triangles, const std::vector<int> &place) {
-    std::vector<Side> sides;
-    sides.reserve(3 * triangles.size());
-    for (int t = 0; t < int(triangles.size()); ++t)
-        for (int k = 0; k < 3; ++k) {
-            const int from = triangles[t][k], to = triangles[t][(k + 1) % 3], a = place[from], b = place[to];
-            sides.push_back({std::min(a, b), std::max(a, b), t, from, to, a < b});
-        }
-    std::sort(sides.begin(), sides.end(), [](const Side &a, const Side &b) {
-        return std::array{a.low, a.high, a.triangle} < std::array{b.low, b.high, b.triangle};
-    });
-    return sides;
 }
 
 struct Enclosed {
@@ -89,17 +67,15 @@ std::vector<int> parts_facing_inside(const TriangleMesh &mesh) {
 
     DisjointSets cover(2 * count); // triangles as they are wound, and turned over
     std::vector<Side> open;
-    const std::vector<Side> sides = sorted_sides(mesh.triangles, numbered_places(points));
-    for (size_t first = 0, last; first < sides.size(); first = last) {
-        const Side &a = sides[first];
-        for (last = first + 1; last < sides.size() && sides[last].low == a.low && sides[last].high == a.high;) ++last;
-        if (last - first == 1) open.push_back(a);
-        if (last - first != 2) continue;
-        const Side &b = sides[first + 1];
+    for_edges(sides_by_edge(mesh.triangles, numbered_places(points), int(points.size())), [&](View<Side> sides) {
+        const Side &a = sides[0];
+        if (sides.size() == 1) open.push_back(a);
+        if (sides.size() != 2) return;
+        const Side &b = sides[1];
         const bool agree = a.rises != b.rises; // a side runs one way in one triangle, and the other way in the other
         cover.join(a.triangle, agree ? b.triangle : b.triangle + count);
         cover.join(a.triangle + count, agree ? b.triangle + count : b.triangle);
-    }
+    });
 
     std::vector<Enclosed> parts(2 * size_t(count));
     const auto add = [&](int triangle, const Enclosed &of, bool fan) {

@@ -1,8 +1,10 @@
 #include "ringlet/geometry/solid.h"
 
+#include "ringlet/geometry/sides.h"
+
 #include <algorithm>
 #include <array>
-#include <tuple>
+#include <numeric>
 
 namespace ringlet {
 
@@ -25,30 +27,18 @@ std::shared_ptr<const ProximityGrid> Solid::cells_within(double distance) const 
 }
 
 void Solid::find_edges() {
-    struct Side {
-        int low, high, triangle, k;
-    };
-    std::vector<Side> sides;
-    sides.reserve(3 * triangles_.size());
-    for (size_t t = 0; t < triangles_.size(); ++t)
-        for (int k = 0; k < 3; ++k) {
-            const int i = triangles_[t][(k + 1) % 3], j = triangles_[t][(k + 2) % 3];
-            sides.push_back({std::min(i, j), std::max(i, j), static_cast<int>(t), k});
-        }
-    std::sort(sides.begin(), sides.end(), [](const Side &a, const Side &b) {
-        return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
-    });
-    for (size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+    std::vector<int> itself(points_.size());
+    std::iota(itself.begin(), itself.end(), 0);
+    for_edges(sides_by_edge(triangles_, itself, int(itself.size())), [&](View<Side> sides) {
         Vec3 sum = Vec3::Zero();
-        for (; end < sides.size() && sides[end].low == sides[begin].low && sides[end].high == sides[begin].high; ++end)
-            sum += normals_[sides[end].triangle].face;
-        const bool open = end - begin == 1;
-        for (size_t i = begin; i < end; ++i) {
-            normals_[sides[i].triangle].edge[sides[i].k] = sum.stableNormalized();
-            normals_[sides[i].triangle].open_edge[sides[i].k] = open;
+        for (const Side &side : sides) sum += normals_[side.triangle].face;
+        const bool open = sides.size() == 1;
+        for (const Side &side : sides) {
+            normals_[side.triangle].edge[side.opposite] = sum.stableNormalized();
+            normals_[side.triangle].open_edge[side.opposite] = open;
         }
-        if (open) open_[sides[begin].low] = open_[sides[begin].high] = 1;
-    }
+        if (open) open_[sides[0].low] = open_[sides[0].high] = 1;
+    });
 }
 
 SignedDistance Solid::signed_distance(const Vec3 &place, double within, int hint) const {
