@@ -6,22 +6,16 @@ are no springs: how stiff they are shows in how the whole swings.
 
 from __future__ import annotations
 
-from typing import Any, Literal, get_args
+from typing import Any, Literal
 
 Preset = Literal["tight_springs", "loose_ringlets", "heavy_wet", "light_frizz", "stiff_braids", "locs", "afro"]
 
-PRESETS: dict[str, dict[str, Any]] = dict(
-    zip(
-        get_args(Preset),
-        (
-            {"bounce": {"value": 6.0, "vary": 0.1}, "settle": 0.5},
-            {"bounce": {"value": 3.0, "vary": 0.1}, "settle": 0.9},
-            {"settle": 0.5, "weight": 2.0},
-            {"settle": {"value": 0.25, "vary": 0.4}, "weight": 0.7, "air": 4.0},
-            {"swing": {"value": 1.3, "of_hair": True}, "settle": 0.25, "weight": 1.2},
-            {"swing": {"value": 1.6, "of_hair": True}, "settle": 0.2, "weight": 1.3},
-            {"swing": {"value": 0.75, "of_hair": True, "noise": 0.1}, "settle": 0.3},
-        ),
-        strict=True,
-    )
-)
+PRESETS: dict[str, dict[str, Any]] = {
+    "tight_springs": {"bounce": {"value": 6.0, "vary": 0.1}, "settle": 0.5},
+    "loose_ringlets": {"bounce": {"value": 3.0, "vary": 0.1}, "settle": 0.9},
+    "heavy_wet": {"settle": 0.5, "weight": 2.0},
+    "light_frizz": {"settle": {"value": 0.25, "vary": 0.4}, "weight": 0.7, "air": 4.0},
+    "stiff_braids": {"swing": {"value": 1.3, "of_hair": True}, "settle": 0.25, "weight": 1.2},
+    "locs": {"swing": {"value": 1.6, "of_hair": True}, "settle": 0.2, "weight": 1.3},
+    "afro": {"swing": {"value": 0.75, "of_hair": True, "noise": 0.1}, "settle": 0.3},
+}

@@ -1,8 +1,8 @@
 #include "ringlet/contact/contact_set.h"
 
 #include "ringlet/contact/known.h"
+#include "ringlet/contact/rotation.h"
 #include "ringlet/contact/settings.h"
-#include "ringlet/contact/turning.h"
 #include "ringlet/math/collect.h"
 
 #include <algorithm>
@@ -113,7 +113,7 @@ std::vector<Contact> ContactSet::linearise(const CollisionMesh &mesh, const Cont
 #pragma omp parallel for schedule(static)
     for (int k = 0; k < int(found.size()); ++k)
         if (Friction &friction = found[k].friction; friction.coefficient > 0.0)
-            friction.reference = turning(found[k].at, start, guess_) * friction.reference;
+            friction.reference = pair_rotation(found[k].at, start, guess_) * friction.reference;
     return found;
 }
 

@@ -25,8 +25,8 @@ struct PairValue {
     }
 };
 
-// A law is convex in s: what it depends on besides is frozen where contacts are found. What it remembers from step to step has
-// the name of its contact.
+// What a law depends on besides s is frozen where contacts are found. What it remembers from step to step has the name of its
+// contact.
 template <class Law>
 concept PairForce = requires(const Law law, const Vec3 s) {
     { law.energy(s) } -> std::same_as<double>;

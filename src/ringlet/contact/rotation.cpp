@@ -1,4 +1,4 @@
-#include "ringlet/contact/turning.h"
+#include "ringlet/contact/rotation.h"
 
 #include <Eigen/Geometry>
 
@@ -16,7 +16,7 @@ Mat3 frame(const Vec3 &u, const Vec3 &v) {
 
 } // namespace
 
-Mat3 turning(const Stencil &pair, View<Vec3> start, View<Vec3> end) {
+Mat3 pair_rotation(const Stencil &pair, View<Vec3> start, View<Vec3> end) {
     const int p = pair.vertex[0], q = pair.vertex[1], r = pair.vertex[2], s = pair.vertex[3];
     const auto turned = [&](const auto &frame_of) { return Mat3(frame_of(end) * frame_of(start).transpose()); };
     if (!pair.edge_edge()) return turned([&](View<Vec3> x) { return frame(x[r] - x[q], x[s] - x[q]); });
