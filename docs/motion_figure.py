@@ -67,7 +67,7 @@ def moved(preset: str, kind: str) -> tuple[np.ndarray, np.ndarray]:
 
 def write_motion(path: Path) -> None:
     """Writes the picture."""
-    figure = Figure(figsize=(12, 3.2), layout="constrained")
+    figure = Figure(figsize=(8.5, 4), layout="constrained")  # as wide as the page: letters keep their size
     panels = figure.subplots(2, len(PRESETS), sharex=True, sharey="row")
     for column, (preset, kind) in enumerate(zip(PRESETS, TYPES, strict=True)):
         for axes, values in zip(panels[:, column], moved(preset, kind), strict=True):
@@ -75,11 +75,11 @@ def write_motion(path: Path) -> None:
             axes.axhline(0.0, color=GREY, lw=0.6)
             axes.axvspan(0.2, 0.2 + HOP, color=GREY, alpha=0.15, lw=0)
             axes.plot(time, values, color=RED, lw=1.4)
-            axes.tick_params(labelsize=7)
-        panels[0, column].set_title(f"{preset.replace('_', ' ')} ({kind})", fontsize=9)
-        panels[1, column].set_xlabel("s", fontsize=8)
-    panels[0, 0].set_ylabel("opens [%]", fontsize=8)
-    panels[1, 0].set_ylabel("tip aside [mm]", fontsize=8)
+            axes.tick_params(labelsize=9)
+        panels[0, column].set_title("\n".join([*preset.split("_"), kind]), fontsize=10)
+        panels[1, column].set_xlabel("s", fontsize=10)
+    panels[0, 0].set_ylabel("opens [%]", fontsize=10)
+    panels[1, 0].set_ylabel("tip aside [mm]", fontsize=10)
     with replacing(path) as aside:
         figure.savefig(aside)
 

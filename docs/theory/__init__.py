@@ -6,6 +6,7 @@ from pathlib import Path
 
 from theory import cloth, contact, strand
 from theory.answer import Answer, draw, tell
+from theory.locks import write_locks
 
 ENERGIES = {
     "stretch": strand.stretch,
@@ -22,7 +23,8 @@ ENERGIES = {
 
 
 def write_theory(folder: Path) -> None:
-    """Writes ``theory_NAME.svg`` and ``theory_NAME.md`` of every energy."""
+    """Writes ``theory_NAME.svg`` and ``theory_NAME.md`` of every energy, and the table of locks."""
+    write_locks(folder / "theory_locks.md")
     for name, run in ENERGIES.items():
         answer: Answer = run()
         draw(answer, folder / f"theory_{name}.svg")
