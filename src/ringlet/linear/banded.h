@@ -30,8 +30,9 @@ public:
     template <int count> void add_square(int first, T coefficient, const T (&u)[count]) {
         add_squares(first, coefficient, reinterpret_cast<const T(&)[1][count]>(u));
     }
-    // Adds coefficient · Σ u uᵀ over several u.
-    template <int terms, int count> void add_squares(int first, T coefficient, const T (&u)[terms][count]) {
+    // Adds coefficient · Σ u uᵀ over several u, each an array of values.
+    template <int terms, class Array> void add_squares(int first, T coefficient, const Array (&u)[terms]) {
+        constexpr int count = sizeof(Array) / sizeof(T);
         static_assert(count <= band);
         T *from = entry(first);
         unroll<0, count>([&](auto c) {

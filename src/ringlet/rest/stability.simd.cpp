@@ -9,7 +9,6 @@ namespace ringlet::RINGLET_SIMD {
 namespace {
 
 constexpr int dofs = 4;                  // of a vertex: its position, and the rotation of the director of its edge [rad]
-constexpr int joint_dofs = 11;           // of two consecutive edges: three vertices and two directors
 constexpr double bisection_error = 0.01; // relative error of the least factor
 using Matrix = Banded<double, dofs, joint_dofs>;
 
@@ -35,12 +34,10 @@ struct Edge {
     Vec<Dual> spin_of() const { return spin(before, tangent, length); }
 };
 
-// Residual r of one energy term of two consecutive edges, and its gradient by the two edge vectors and the two rotations of
-// directors. The dual numbers of the gradient hold the second derivatives.
+// Residual r of one energy term of a joint. The dual numbers of its gradient hold the second derivatives.
 struct Residual {
     double value;
-    Vec<Dual> first, second;
-    Dual turn0, turn1;
+    std::array<Dual, joint_dofs> gradient;
 };
 
 // Two consecutive edges: the residuals of bend at the corner between them and of twist of the first.
@@ -57,8 +54,9 @@ public:
     Residual twist() const {
         const auto g = frame_twist_gradient(corner_, e0_.tangent, e1_.tangent, e0_.length, e1_.length);
         const Dual angle = frame_twist(e0_.director, e0_.tangent, e1_.director, e1_.tangent);
-        return {wrap(angle.value - strands_.rest_dihedral[i_]), g.first - e0_.spin_of(), g.second + e1_.spin_of(),
-                dual_constant(-1.0), dual_constant(1.0)};
+        return {
+            wrap(angle.value - strands_.rest_dihedral[i_]),
+            joint_gradient<Dual>({g.first - e0_.spin_of(), g.second + e1_.spin_of()}, dual_constant(-1.0), dual_constant(1.0))};
     }
 
 private:
@@ -66,7 +64,8 @@ private:
 
     Residual bend(Vec<Dual> axis, Dual by_turn, double rest) const {
         const auto g = turning_gradient(corner_, e0_.tangent, e1_.tangent, e0_.length, e1_.length, axis);
-        return {dot(turning_, axis).value - rest, g.first, g.second + by_turn * e1_.spin_of(), dual_constant(0.0), by_turn};
+        return {dot(turning_, axis).value - rest,
+                joint_gradient<Dual>({g.first, g.second + by_turn * e1_.spin_of()}, dual_constant(0.0), by_turn)};
     }
 
     const StaticStrands &strands_;
@@ -141,25 +140,13 @@ private:
     }
 
     void add(int i, const Residual &residual, double stiffness) {
-        // Chain rule from edge vectors to the positions of three vertices.
-        const Dual rows[joint_dofs] = {-residual.first.x,
-                                       -residual.first.y,
-                                       -residual.first.z,
-                                       residual.turn0,
-                                       residual.first.x - residual.second.x,
-                                       residual.first.y - residual.second.y,
-                                       residual.first.z - residual.second.z,
-                                       residual.turn1,
-                                       residual.second.x,
-                                       residual.second.y,
-                                       residual.second.z};
         const double force = stiffness * residual.value;
         for (int r = 0; r < joint_dofs; ++r) {
-            const Dual::Derivatives &by = rows[r].by;
-            const double second[joint_dofs] = {-by[0],        -by[1], -by[2], by[6], by[0] - by[3], by[1] - by[4],
-                                               by[2] - by[5], by[7],  by[3],  by[4], by[5]};
+            const Dual &by_dof = residual.gradient[r];
+            const Dual::Derivatives &by = by_dof.by;
+            const auto second = joint_gradient<double>({{by[0], by[1], by[2]}, {by[3], by[4], by[5]}}, by[6], by[7]);
             for (int c = 0; c <= r; ++c) {
-                add_lower(growing_, dofs * i + r, dofs * i + c, stiffness * rows[r].value * rows[c].value);
+                add_lower(growing_, dofs * i + r, dofs * i + c, stiffness * by_dof.value * residual.gradient[c].value);
                 add_lower(fixed_, dofs * i + r, dofs * i + c, force * second[c]);
             }
         }

@@ -189,46 +189,41 @@ private:
         const Vec<T> K = turning(s.corner, before.tangent, s.tangent);
         const T residual[2] = {s.curvature1 - rows_[i].damped_curvature1, s.curvature2 - rows_[i].damped_curvature2};
         const T by_frame[2] = {dot(K, other), -dot(K, s.director)};
-        T u[2][11] = {};
+        std::array<T, joint_dofs> by_dofs[2];
         terms.bending = Vec<T>{};
         for (int k = 0; k < 2; ++k) {
             const EdgeGradient<T> g =
                 turning_gradient(s.corner, before.tangent, s.tangent, before.length, s.length, k == 0 ? s.director : other);
-            const Vec<T> second = g.second + by_frame[k] * terms.spin;
-            const T force = rows_[i].bend_stiffness * residual[k], frame = by_frame[k] / rows_[i].rest_length;
-            terms.bending = terms.bending + force * g.first;
-            this->add(gradient, i - 1, -(force * g.first));
-            this->add(gradient, i, force * (g.first - second));
-            this->add(gradient, i + 1, force * second);
-            gradient[4 * i + 3] += force * frame;
-            put(u[k], -(rows_[i - 1].free * g.first));
-            put(u[k] + 4, rows_[i].free * (g.first - second));
-            u[k][7] = rows_[i].frame_free * frame;
-            put(u[k] + 8, rows_[i + 1].free * second);
+            terms.bending = terms.bending + (rows_[i].bend_stiffness * residual[k]) * g.first;
+            by_dofs[k] =
+                joint_gradient<T>({g.first, g.second + by_frame[k] * terms.spin}, T{}, by_frame[k] / rows_[i].rest_length);
         }
-        hessian.add_squares(4 * (i - 1), rows_[i].bend_stiffness, u);
+        add_squares(i - 1, rows_[i].bend_stiffness, residual, by_dofs, gradient, hessian);
     }
 
     void add_twist(int i, T *gradient, Matrix &hessian, AddedTerms &terms) const {
         const RodShape<T> &s = shapes_[i], &after = shapes_[i + 1];
         const EdgeGradient<T> g = frame_twist_gradient(after.corner, s.tangent, after.tangent, s.length, after.length);
-        const Vec<T> first = g.first - terms.spin_before, second = g.second + terms.spin;
-        const T frame0 = -1.0 / rows_[i].rest_length, frame1 = 1.0 / rows_[i + 1].rest_length;
-        const T moment = rows_[i].twist_stiffness * (s.strain - rows_[i].damped_strain);
-        terms.twisting = moment * g.first;
-        terms.moment_of_twist = moment;
-        this->add(gradient, i, -(moment * first));
-        this->add(gradient, i + 1, moment * (first - second));
-        this->add(gradient, i + 2, moment * second);
-        gradient[4 * i + 3] += moment * frame0;
-        gradient[4 * i + 7] += moment * frame1;
-        T u[11];
-        put(u, -(rows_[i].free * first));
-        u[3] = rows_[i].frame_free * frame0;
-        put(u + 4, rows_[i + 1].free * (first - second));
-        u[7] = rows_[i + 1].frame_free * frame1;
-        put(u + 8, rows_[i + 2].free * second);
-        hessian.add_square(4 * i, rows_[i].twist_stiffness, u);
+        const T residual[1] = {s.strain - rows_[i].damped_strain};
+        terms.moment_of_twist = rows_[i].twist_stiffness * residual[0];
+        terms.twisting = terms.moment_of_twist * g.first;
+        std::array<T, joint_dofs> by_dofs[1] = {joint_gradient<T>({g.first - terms.spin_before, g.second + terms.spin},
+                                                                  -1.0 / rows_[i].rest_length, 1.0 / rows_[i + 1].rest_length)};
+        add_squares(i, rows_[i].twist_stiffness, residual, by_dofs, gradient, hessian);
+    }
+
+    // Of Σ ½ stiffness · residual² of the joint whose first vertex is i. Leaves in by_dofs what is free.
+    template <int count>
+    void add_squares(int i, T stiffness, const T (&residual)[count], std::array<T, joint_dofs> (&by_dofs)[count], T *gradient,
+                     Matrix &hessian) const {
+        for (int k = 0; k < count; ++k) {
+            const T force = stiffness * residual[k];
+            for (int d = 0; d < joint_dofs; ++d) {
+                gradient[4 * i + d] += force * by_dofs[k][d];
+                by_dofs[k][d] *= d % 4 < 3 ? rows_[i + d / 4].free : rows_[i + d / 4].frame_free;
+            }
+        }
+        hessian.add_squares(4 * i, stiffness, by_dofs);
     }
 
     LoadBehind<T> load_; // of all vertices, at the positions evaluated last

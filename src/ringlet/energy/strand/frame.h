@@ -10,6 +10,8 @@
 #include "ringlet/energy/strand/bend.h"
 #include "ringlet/math/pack.h"
 
+#include <array>
+
 namespace ringlet::RINGLET_SIMD {
 
 // θ / sin θ; 1 for a straight corner.
@@ -25,6 +27,16 @@ template <class T> inline Vec<T> turning(const Corner<T> &c, Vec<T> t0, Vec<T> t
 template <class T> struct EdgeGradient {
     Vec<T> first, second;
 };
+
+// Degrees of freedom of a joint, which is two consecutive edges: its three vertices and, behind each of the first two, the
+// rotation of the director of the edge that begins there.
+constexpr int joint_dofs = 11;
+
+// Gradient by them of what depends on the two edge vectors and both rotations.
+template <class T> inline std::array<T, joint_dofs> joint_gradient(const EdgeGradient<T> &by_edges, T turn0, T turn1) {
+    const Vec<T> first = by_edges.first, last = by_edges.second, middle = first - last;
+    return {-first.x, -first.y, -first.z, turn0, middle.x, middle.y, middle.z, turn1, last.x, last.y, last.z};
+}
 
 // ∂(K·W)/∂e for a unit vector W ⟂ t₁ under parallel transport with t₁.
 template <class T>
