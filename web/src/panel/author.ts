@@ -1,7 +1,11 @@
 // The name under which this page takes snapshots and writes notes, which is that of its person; and times.
 
 import { h } from "../dom";
-import { NAME, ownName } from "./people";
+
+export const NAME = "ringlet-person"; // where this browser remembers it
+
+/** The name of this browser's person; empty where it was not given yet. */
+export const ownName = (): string => localStorage.getItem(NAME) ?? "";
 
 /** A field for the name; changed: called after it was given. */
 export function authorField(changed: () => void): HTMLInputElement {

@@ -5,6 +5,9 @@ import type { File, Model, Place } from "../model";
 import type { Json } from "../protocol";
 import type { Setting } from "./schema";
 
+/** Makes the control of a setting inside another. */
+export type MakeInner = (place: Place, setting: Setting) => Field;
+
 let named = 0;
 
 export abstract class Field {

@@ -8,7 +8,7 @@ import { openDialog } from "./dialog";
 import type { Viewer } from "../view/viewer";
 import { bindKey } from "./keys";
 import type { LockTool } from "./lock";
-import { ownName } from "./people";
+import { ownName } from "./author";
 import type { Notices } from "./status";
 import type { TimelineBar } from "./timeline";
 import type { Viewbar } from "./viewbar";

@@ -1,7 +1,7 @@
 // Which control edits a setting.
 
 import type { File, Model, Place } from "../model";
-import type { Field } from "./field";
+import type { Field, MakeInner } from "./field";
 import { DrawnField, NameField, RegionsField } from "./name_fields";
 import { NumberField } from "./number_field";
 import { ChoiceField, ColorField, OtherField, TextField, ToggleField } from "./plain_fields";
@@ -11,9 +11,11 @@ import { TableField } from "./table_field";
 import { VectorField } from "./vector_field";
 
 export function makeField(model: Model, file: File, place: Place, setting: Setting): Field {
+  const { kind } = setting;
+  const inner: MakeInner = (at, one) => makeField(model, file, at, one);
+  if (kind === "number" || kind === "integer") return new NumberField(model, file, place, setting, inner);
+  if (kind === "table" || kind === "list") return new TableField(model, file, place, setting, inner);
   const Kind = {
-    number: NumberField,
-    integer: NumberField,
     ramp: RampField,
     toggle: ToggleField,
     choice: ChoiceField,
@@ -23,9 +25,7 @@ export function makeField(model: Model, file: File, place: Place, setting: Setti
     drawn: DrawnField,
     regions: RegionsField,
     vector: VectorField,
-    table: TableField,
-    list: TableField,
     other: OtherField,
-  }[setting.kind];
+  }[kind];
   return new Kind(model, file, place, setting);
 }

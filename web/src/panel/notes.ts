@@ -7,12 +7,11 @@ import type { Note } from "../protocol";
 import { arrow, fromPixels, isNew, type Stroke, toPixels } from "../view/marks";
 import { onScreen, pick } from "../view/pick";
 import type { Viewer } from "../view/viewer";
-import { shortTime } from "./author";
+import { ownName, shortTime } from "./author";
 import { openDialog } from "./dialog";
 import { bindKey, plainKey } from "./keys";
 import type { Look } from "./look";
 import "./notes.css";
-import { ownName } from "./people";
 import type { Tray, TrayTab } from "./tray";
 
 type Tool = "pin" | "arrow" | "pen";

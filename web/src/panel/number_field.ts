@@ -3,9 +3,8 @@
 import { h, iconButton } from "../dom";
 import { at, type File, type Model, type Place } from "../model";
 import type { Json } from "../protocol";
-import { Field } from "./field";
+import { Field, type MakeInner } from "./field";
 import { Fold } from "./fold";
-import { makeField } from "./make_field";
 import { NumberInput } from "./number";
 import type { Typed } from "./quantity";
 import { type Range, rounded, sliderRange } from "./range";
@@ -22,7 +21,7 @@ export class NumberField extends Field {
   private more: HTMLElement | null = null;
   private readonly folds: { fold: Fold; settings: Setting[] }[] = [];
 
-  constructor(model: Model, file: File, place: Place, setting: Setting) {
+  constructor(model: Model, file: File, place: Place, setting: Setting, inner: MakeInner) {
     super(model, file, place, setting);
     this.slider = new Slider({ "aria-label": setting.label, title: setting.description }, (value, resting) =>
       this.give({ value: rounded(value, this.range.step), unit: "" }, resting),
@@ -45,7 +44,7 @@ export class NumberField extends Field {
       ["varies", false],
     ] as const) {
       const settings = setting.inner.filter(({ kind }) => (kind === "ramp") === ramps);
-      const fields = () => settings.map((one) => makeField(model, file, [...place, one.name], one));
+      const fields = () => settings.map((one) => inner([...place, one.name], one));
       if (settings.length) this.folds.push({ fold: new Fold("varies", label, fields), settings });
     }
     this.more = h("div", { class: "folds" }, ...this.folds.map(({ fold }) => fold.element));

@@ -4,14 +4,11 @@ import "./people.css";
 import { h, iconButton } from "../dom";
 import type { Model } from "../model";
 import type { Person } from "../protocol";
+import { NAME, ownName } from "./author";
 import { bindKey, plainKey } from "./keys";
 import type { Look } from "./look";
 
-export const NAME = "ringlet-person"; // where this browser remembers it
 const MOST_SEEN = 4; // people in the bar; the list has all
-
-/** The name of this browser's person; empty where it was not given yet. */
-export const ownName = (): string => localStorage.getItem(NAME) ?? "";
 
 /** The color of a person, for CSS. */
 export const colorOf = (person: Person): string => `oklch(0.5 0.13 ${(40 + 137.5 * person.hue) % 360})`;

@@ -5,12 +5,11 @@ import type { Model } from "../model";
 import type { Snapshot } from "../protocol";
 import { thumbnail } from "../view/capture";
 import type { Viewer } from "../view/viewer";
-import { shortTime } from "./author";
+import { ownName, shortTime } from "./author";
 import { compareWith } from "./compare";
 import { openDialog } from "./dialog";
 import { bindKey, plainKey } from "./keys";
 import type { Look } from "./look";
-import { ownName } from "./people";
 import type { Tray, TrayTab } from "./tray";
 
 export class Snapshots {

@@ -3,16 +3,15 @@
 import { h, iconButton } from "../dom";
 import type { File, Model, Place } from "../model";
 import type { Json } from "../protocol";
-import { Field } from "./field";
+import { Field, type MakeInner } from "./field";
 import { Fold } from "./fold";
-import { makeField } from "./make_field";
 import type { Setting } from "./schema";
 
 export class TableField extends Field {
   private readonly box = h("div", { class: "tables" });
   private entries: Fold[] = [];
 
-  constructor(model: Model, file: File, place: Place, setting: Setting) {
+  constructor(model: Model, file: File, place: Place, setting: Setting, private readonly inner: MakeInner) {
     super(model, file, place, setting);
     const add = this.isList
       ? iconButton("plus", `Add to ${setting.label}`, () => this.send([...this.tables, this.fresh()], true))
@@ -46,7 +45,7 @@ export class TableField extends Field {
   private entry(k: number): Fold {
     const title = this.isList ? `${this.setting.label} ${k + 1}` : this.setting.label;
     const place = this.isList ? [...this.place, k] : this.place;
-    const fields = () => this.setting.inner.map((one) => makeField(this.model, this.file, [...place, one.name], one));
+    const fields = () => this.setting.inner.map((one) => this.inner([...place, one.name], one));
     const remove = h("button", { type: "button", class: "quiet", onclick: () => this.take(k) }, `Remove ${title}`);
     return new Fold("table", title, fields, this.isList ? remove : undefined);
   }

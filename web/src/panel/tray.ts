@@ -1,9 +1,8 @@
 // The tray below the picture: what is kept next to the recipe, one kind at a time.
 
 import { h, iconButton } from "../dom";
-import { authorField } from "./author";
+import { authorField, ownName } from "./author";
 import { bindKey, plainKey } from "./keys";
-import { ownName } from "./people";
 import "./tray.css";
 
 export interface TrayTab {
