@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 
 import ringlet
-from ringlet.cli.options import UNITS, FromUnit, FromUp, Json, Report, Threads
+from ringlet.cli.options import UNITS, FromUnit, FromUp, Json, Report, Threads, locks_option
 from ringlet.cli.output import print_json
 from ringlet.cli.progress import shown_progress
 
@@ -30,17 +30,7 @@ def adopt(
     mesh: Annotated[
         str | None, typer.Option("--mesh", metavar="PRIM", help="Prim of the head.", show_default=False)
     ] = None,
-    locks: Annotated[
-        int | None,
-        typer.Option(
-            "--locks",
-            min=1,
-            max=1_000_000,
-            metavar="N",
-            help="Number of locks; by default one for each clump.",
-            show_default=False,
-        ),
-    ] = None,
+    locks: Annotated[int | None, locks_option("Number of locks; by default one for each clump.")] = None,
     from_unit: FromUnit = None,
     from_up: FromUp = None,
     report: Report = None,

@@ -8,7 +8,19 @@ from typing import Annotated, Any, Literal
 import typer
 
 import ringlet
-from ringlet.cli.options import UNITS, Axis, Frames, FromUnit, FromUp, Json, Threads, Unit, frame_option
+from ringlet.cli.options import (
+    UNITS,
+    Axis,
+    Frames,
+    FromUnit,
+    FromUp,
+    Json,
+    Threads,
+    Unit,
+    Wider,
+    frame_option,
+    points_option,
+)
 from ringlet.cli.output import wrote
 
 
@@ -33,19 +45,8 @@ def convert(
     fraction: Annotated[
         float, typer.Option("--fraction", min=0.0001, max=1.0, help="Fraction of the curves to keep.")
     ] = 1.0,
-    wider: Annotated[
-        bool, typer.Option("--wider", help="With --fraction: wider curves, which cover as much as all of them.")
-    ] = False,
-    points: Annotated[
-        int | None,
-        typer.Option(
-            "--points",
-            min=2,
-            max=ringlet.limits.POINTS,
-            help="Points of each curve, evenly spaced along it.",
-            show_default=False,
-        ),
-    ] = None,
+    wider: Wider = False,
+    points: Annotated[int | None, points_option("Points of each curve, evenly spaced along it.")] = None,
     deformable: Annotated[
         Path | None,
         typer.Option(

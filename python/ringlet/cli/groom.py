@@ -9,16 +9,14 @@ from typing import Annotated
 import typer
 
 import ringlet
-from ringlet.cli.options import Json, Report, Threads, usd_file
+from ringlet.cli.options import Json, Report, Threads, usd_output
 from ringlet.cli.output import wrote
 from ringlet.cli.progress import shown_progress
 
 
 def groom(
     recipe: Annotated[Path, typer.Argument(metavar="RECIPE", help="The recipe, a TOML file.")],
-    output: Annotated[
-        Path, typer.Option("--output", "-o", callback=usd_file, metavar="GROOM", help="The USD file to write.")
-    ] = Path("groom.usdc"),
+    output: Annotated[Path, usd_output("GROOM")] = Path("groom.usdc"),
     variant: Annotated[
         list[Path] | None,
         typer.Option(

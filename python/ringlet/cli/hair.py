@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 import ringlet
-from ringlet.cli.options import Fraction, Frames, Json, Report, Threads, Variant, usd_file
+from ringlet.cli.options import Fraction, Frames, Json, Report, Threads, Variant, Wider, points_option, usd_output
 from ringlet.cli.output import density, wrote
 from ringlet.cli.progress import shown_progress
 
@@ -19,9 +19,7 @@ def hair(
     groom: Annotated[
         Path, typer.Argument(metavar="GROOM", help="The groom, a USD file; or a cache, which lies over its groom.")
     ],
-    output: Annotated[
-        Path, typer.Option("--output", "-o", callback=usd_file, metavar="HAIR", help="The USD file to write.")
-    ] = Path("hair.usdc"),
+    output: Annotated[Path, usd_output("HAIR")] = Path("hair.usdc"),
     cache: Annotated[
         Path | None,
         typer.Option(
@@ -34,20 +32,8 @@ def hair(
     variant: Variant = None,
     frames: Frames = None,
     fraction: Fraction = 1.0,
-    wider: Annotated[
-        bool, typer.Option("--wider", help="With --fraction: wider hairs, which cover as much as all of them.")
-    ] = False,
-    points: Annotated[
-        int | None,
-        typer.Option(
-            "--points",
-            min=2,
-            max=ringlet.limits.POINTS,
-            metavar="N",
-            help="Points of each hair; those of the groom by default.",
-            show_default=False,
-        ),
-    ] = None,
+    wider: Wider = False,
+    points: Annotated[int | None, points_option("Points of each hair; those of the groom by default.")] = None,
     camera: Annotated[
         str | None,
         typer.Option(

@@ -65,6 +65,19 @@ Fraction = Annotated[
     float,
     typer.Option("--fraction", min=0.001, max=1.0, help="Fraction of the hairs to make, for a quick look."),
 ]
+Wider = Annotated[
+    bool, typer.Option("--wider", help="With --fraction: wider curves, which cover as much as all of them.")
+]
+
+
+def points_option(help: str) -> Any:
+    """The option ``--points`` of a number of points of each curve, none by default."""
+    return typer.Option("--points", metavar="N", min=2, max=ringlet.limits.POINTS, help=help, show_default=False)
+
+
+def locks_option(help: str) -> Any:
+    """The option ``--locks`` of a number of locks, none by default."""
+    return typer.Option("--locks", metavar="N", min=1, max=1_000_000, help=help, show_default=False)
 
 
 def frame_option(help: str) -> Any:
@@ -96,6 +109,11 @@ def ending_in(*suffixes: str) -> Callable[[Path | None], Path | None]:
 
 usd_file, picture_file = ending_in(".usdc", ".usd", ".usda"), ending_in(".png", ".jpg", ".jpeg")
 still_file = ending_in(".png", ".jpg", ".jpeg", ".exr")
+
+
+def usd_output(metavar: str) -> Any:
+    """The option ``--output`` of a USD file."""
+    return typer.Option("--output", "-o", callback=usd_file, metavar=metavar, help="The USD file to write.")
 
 
 def parse_frames(text: str) -> tuple[int, int]:

@@ -11,16 +11,26 @@ from typing import Annotated
 import typer
 
 import ringlet
-from ringlet.cli.options import AllowStale, Frames, GroomOfShot, Json, Report, ShotFile, Threads, Variant, usd_file
+from ringlet.cli.options import (
+    AllowStale,
+    Frames,
+    GroomOfShot,
+    Json,
+    Report,
+    ShotFile,
+    Threads,
+    Variant,
+    locks_option,
+    usd_file,
+    usd_output,
+)
 from ringlet.cli.output import wrote
 from ringlet.cli.progress import shown_progress
 
 
 def sim(
     shot: ShotFile,
-    output: Annotated[
-        Path, typer.Option("--output", "-o", callback=usd_file, metavar="CACHE", help="The USD file to write.")
-    ] = Path("cache.usdc"),
+    output: Annotated[Path, usd_output("CACHE")] = Path("cache.usdc"),
     groom: GroomOfShot = None,
     variant: Variant = None,
     frames: Frames = None,
@@ -34,14 +44,7 @@ def sim(
     ] = False,
     locks: Annotated[
         int | None,
-        typer.Option(
-            "--locks",
-            min=1,
-            max=1_000_000,
-            metavar="N",
-            help="Of finished hair without a recipe, strands to simulate, which the others follow; all by default.",
-            show_default=False,
-        ),
+        locks_option("Of finished hair without a recipe, strands to simulate, which others follow; all by default."),
     ] = None,
     resume: Annotated[
         bool, typer.Option("--resume", help="Continue a run that was interrupted; the result is the same to the bit.")
