@@ -45,11 +45,8 @@ nb::ndarray<nb::numpy, Scalar> to_numpy(std::vector<Element> &&values, std::init
     return nb::ndarray<nb::numpy, Scalar>(reinterpret_cast<Scalar *>(owned->data()), shape, owner);
 }
 
-// The columns of a report.
-template <size_t count> nb::tuple names_of(const char *const (&names)[count]) {
-    nb::list list;
-    for (const char *name : names) list.append(name);
-    return nb::tuple(list);
-}
+// The names of the columns of rows (math/row.h), and their number.
+template <class Row> nb::object columns_of() { return nb::tuple(nb::str(Row::columns).attr("split")(", ")); }
+template <class Row> constexpr size_t column_count = sizeof(Row) / sizeof(double);
 
 } // namespace ringlet::bindings

@@ -79,7 +79,7 @@ void bind_cloth(nb::module_ &module) {
                     nb::gil_scoped_release release;
                     report[0] = self.alone().step({vectors<Vec3>(targets), vectors<Vec3>(forces)}, settings);
                 }
-                return to_numpy<double>(std::move(report), {size_t(cloth_report_columns)});
+                return to_numpy<double>(std::move(report), {column_count<ClothReport>});
             },
             "targets"_a, "forces"_a, "settings"_a,
             "One time step; targets: where held and attached vertices are at its end [m], shape (n, 3); forces [N], shape (n, "
@@ -88,5 +88,5 @@ void bind_cloth(nb::module_ &module) {
         .def("energy", &elastic, "positions"_a, "hessian"_a = false,
              "Elastic energy [J], its gradient [N] and the clamped Hessian; held vertices have no gradient.");
 
-    module.attr("CLOTH_REPORT") = names_of(cloth_report_names);
+    module.attr("CLOTH_REPORT") = columns_of<ClothReport>();
 }

@@ -196,15 +196,15 @@ void bind_scene(nb::module_ &module) {
                 const std::vector<Vec3> all_forces = joined({vectors<Vec3>(forces), vectors<Vec3>(cloth_forces)});
                 std::vector<StrandReport> of_strands;
                 std::vector<ClothReport> of_cloths;
-                SceneReport report;
+                SceneReport report{};
                 {
                     nb::gil_scoped_release release;
                     report = self.step({all_targets, all_forces}, settings, of_strands, of_cloths);
                 }
                 const size_t strands = of_strands.size(), cloths = of_cloths.size();
-                return nb::make_tuple(to_numpy<double>(std::vector<SceneReport>{report}, {size_t(scene_report_columns)}),
-                                      to_numpy<double>(std::move(of_strands), {strands, size_t(strand_report_columns)}),
-                                      to_numpy<double>(std::move(of_cloths), {cloths, size_t(cloth_report_columns)}));
+                return nb::make_tuple(to_numpy<double>(std::vector<SceneReport>{report}, {column_count<SceneReport>}),
+                                      to_numpy<double>(std::move(of_strands), {strands, column_count<StrandReport>}),
+                                      to_numpy<double>(std::move(of_cloths), {cloths, column_count<ClothReport>}));
             },
             "targets"_a, "forces"_a, "cloth_targets"_a, "cloth_forces"_a, "body_targets"_a, "settings"_a,
             "One time step. Returns the scene's report (SCENE_REPORT), one report row per strand (REPORT) and one per cloth "
@@ -281,5 +281,5 @@ void bind_scene(nb::module_ &module) {
             },
             "Contacts at the present positions, without a step; their forces have no meaning.");
 
-    module.attr("SCENE_REPORT") = names_of(scene_report_names);
+    module.attr("SCENE_REPORT") = columns_of<SceneReport>();
 }

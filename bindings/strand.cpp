@@ -149,7 +149,7 @@ void bind_strand(nb::module_ &module) {
                                  self.reports);
                 }
                 const size_t rows = self.reports.size();
-                return to_numpy<double>(std::vector<StrandReport>(self.reports), {rows, size_t(strand_report_columns)});
+                return to_numpy<double>(std::vector<StrandReport>(self.reports), {rows, column_count<StrandReport>});
             },
             "targets"_a, "forces"_a, "settings"_a,
             "One time step; targets: where held vertices are at its end [m], shape (n, 3). Returns one report row per strand "
@@ -190,5 +190,5 @@ void bind_strand(nb::module_ &module) {
             "Elastic energy [J], its gradient [N] and the clamped Hessian of a single strand, with signs and turns carried "
             "from the state.");
 
-    module.attr("REPORT") = names_of(strand_report_names);
+    module.attr("REPORT") = columns_of<StrandReport>();
 }

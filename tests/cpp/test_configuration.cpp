@@ -27,7 +27,7 @@ BOOST_AUTO_TEST_CASE(a_limited_move_ends_above_the_surface_and_leaves_others_alo
     SpringScene scene = above_a_triangle();
     PlannedMove move{scene.positions, {}};
     for (const int v : {0, 1}) move.to[v].z() = -0.05;
-    SceneReport report;
+    SceneReport report{};
     scene.configuration->limit(move, StrandLimit::whole, Candidates::Serve::later_moves, report);
     BOOST_TEST(move.to[0].z() > 0.0);
     BOOST_TEST(move.to[0].z() < 0.01);
@@ -46,7 +46,7 @@ BOOST_AUTO_TEST_CASE(recorded_positions_begin_with_the_frame_of_the_step_and_fol
     for (const Vec3 &x : scene.positions) begin.push_back(turn(x));
     PlannedMove move{begin, {}};
     move.to[1].x() += 0.1;
-    SceneReport report;
+    SceneReport report{};
     scene.configuration->limit(move, StrandLimit::whole, Candidates::Serve::later_moves, report);
     scene.configuration->commit(move.to);
     BOOST_REQUIRE(scene.configuration->recorded().size() == 2u);
@@ -63,7 +63,7 @@ BOOST_AUTO_TEST_CASE(a_limited_path_leads_where_its_move_ends) {
     path.straight[2] = path.straight[5] = -0.05; // both masses down
     path.bend[0] = path.bend[3] = 0.01;          // on parabolas
     const std::vector<unsigned char> none(2, 0);
-    SceneReport report;
+    SceneReport report{};
     const auto [move, moves] = limit_path(*scene.objective, *scene.configuration, x,
                                           {Candidates::Serve::later_moves, StrandLimit::whole, none}, path, report);
     BOOST_TEST(move.to[0].z() > 0.0);

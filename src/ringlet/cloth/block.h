@@ -3,28 +3,22 @@
 
 #include "ringlet/cloth/objective.h"
 #include "ringlet/linear/incomplete_cholesky.h"
+#include "ringlet/math/row.h"
 #include "ringlet/solver/block.h"
 
 namespace ringlet {
 
-// What happened to a cloth in a step. All are doubles, so that a report is a row of an array.
-struct ClothReport {
-    double newton;                          // iterations used
-    double linear;                          // iterations of conjugate gradients, of all systems together
-    double cuts;                            // step lengths cut by the line search
-    double residual;                        // largest coordinate of the last search direction [m]
-    double linear_residual;                 // relative residual of the last linear system
-    double unconverged;                     // 1 where iterations ran out
-    double stretch, bend, gravity, kinetic; // energies at the end [J]
-    double max_stretch;                     // largest strain along warp or weft
-    double nan;                             // 1 where a position is not finite (the cloth then keeps its last state)
-};
-inline constexpr int cloth_report_columns = sizeof(ClothReport) / sizeof(double);
-
-inline constexpr const char *cloth_report_names[] = {"newton",          "linear",      "cuts",        "residual",
-                                                     "linear_residual", "unconverged", "stretch",     "bend",
-                                                     "gravity",         "kinetic",     "max_stretch", "nan"};
-static_assert(sizeof(cloth_report_names) / sizeof(*cloth_report_names) == cloth_report_columns);
+// What happened to a cloth in a step.
+RINGLET_ROW(ClothReport,
+            newton,                          // iterations used
+            linear,                          // iterations of conjugate gradients, of all systems together
+            cuts,                            // step lengths cut by the line search
+            residual,                        // largest coordinate of the last search direction [m]
+            linear_residual,                 // relative residual of the last linear system
+            unconverged,                     // 1 where iterations ran out
+            stretch, bend, gravity, kinetic, // energies at the end [J]
+            max_stretch,                     // largest strain along warp or weft
+            nan);                            // 1 where a position is not finite (the cloth then keeps its last state)
 
 class ClothBlock final : public Block {
 public:

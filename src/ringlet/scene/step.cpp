@@ -136,7 +136,7 @@ void commit(SceneData &scene, View<Vec3> start, double dt, const SolverEffort &e
 } // namespace
 
 SceneReport take_step(SceneData &scene, const SceneInput &input, const SceneStep &settings) {
-    SceneReport report;
+    SceneReport report{};
     const StrandStep &step = settings.strands;
     if (!scene.begun) find_initial_contacts(scene, step.dt);
     if (scene.contact.parting_speed > 0.0) scene.objective.contacts.overlaps.grow(scene.contact.parting_speed * step.dt);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ringlet/linear/band_layout.h"
+#include "ringlet/math/row.h"
 #include "ringlet/math/simd.h"
 
 #include <cstddef>
@@ -54,25 +55,19 @@ template <class Column> struct StrandCoefficients {
 };
 
 // Report of one strand in one step.
-struct StrandReport {
-    double newton;                                 // iterations used
-    double cuts;                                   // line search halvings
-    double residual;                               // largest coordinate of the last Newton step [m]
-    double unconverged;                            // 1 where iterations ran out
-    double stalled;                                // 1 where it is not at rest in the step, and yet has not moved
-    double stretch, bend, twist, gravity, kinetic; // energies at the end [J]
-    double max_stretch;                            // largest |l/l̄ − 1| of free edges
-    double flips;                                  // vertices whose sign changed
-    double winding_changes;                        // edges whose number of turns changed
-    double too_straight;                           // edges without twist in this step
-    double clamped;                                // negative eigenvalues of the elements' Hessians at the end
-    double nan;                                    // 1 where a position is not finite (the strand then keeps its last state)
-};
-inline constexpr const char *strand_report_names[] = {
-    "newton",  "cuts",    "residual",    "unconverged", "stalled",         "stretch",      "bend",    "twist",
-    "gravity", "kinetic", "max_stretch", "flips",       "winding_changes", "too_straight", "clamped", "nan"};
-inline constexpr int strand_report_columns = sizeof(StrandReport) / sizeof(double);
-static_assert(sizeof(strand_report_names) / sizeof(*strand_report_names) == strand_report_columns);
+RINGLET_ROW(StrandReport,
+            newton,                                 // iterations used
+            cuts,                                   // line search halvings
+            residual,                               // largest coordinate of the last Newton step [m]
+            unconverged,                            // 1 where iterations ran out
+            stalled,                                // 1 where it is not at rest in the step, and yet has not moved
+            stretch, bend, twist, gravity, kinetic, // energies at the end [J]
+            max_stretch,                            // largest |l/l̄ − 1| of free edges
+            flips,                                  // vertices whose sign changed
+            winding_changes,                        // edges whose number of turns changed
+            too_straight,                           // edges without twist in this step
+            clamped,                                // negative eigenvalues of the elements' Hessians at the end
+            nan);                                   // 1 where a position is not finite (the strand then keeps its last state)
 
 // Effort of finding the end of a step.
 struct StrandEffort {
