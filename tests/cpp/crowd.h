@@ -36,8 +36,6 @@ struct Crowd {
         mesh.rest = start;
     }
 
-    ConnectedMesh connected() const { return {mesh, View<int>(offsets)}; }
-
     // Candidate pairs of a move. Paths longer than `max_path` escape their bounds [m].
     struct Found {
         Candidates candidates;
@@ -52,7 +50,7 @@ struct Crowd {
     CcdReport limit(std::vector<Vec3> &limited, StrandLimit strands = StrandLimit::near_impacts, double max_path = 0.0) const {
         Found found(mesh, {start, end}, max_path);
         PlannedMove move{end, {}};
-        const CcdReport report = limit_move({connected(), start, strands}, found.pairs, move);
+        const CcdReport report = limit_move({offsets, start, strands}, found.pairs, move);
         limited = move.to;
         return report;
     }
@@ -60,7 +58,7 @@ struct Crowd {
     CcdReport resolve(std::vector<Vec3> &resolved) const {
         Found found(mesh, {start, start});
         resolved = end;
-        AdvectedMove move(connected(), found.pairs, start, resolved);
+        AdvectedMove move(found.pairs, start, resolved);
         resolve_impact_zones({View<double>(mass), [](int, const Vec3 &point) { return point; }}, move);
         truncate_locally(move);
         return move.report();
@@ -70,7 +68,7 @@ struct Crowd {
     CcdReport limit_and_shorten(std::vector<Vec3> &limited, StrandLimit strands) const {
         Found found(mesh, {start, end}, 0.1);
         PlannedMove move{end, {}};
-        limit_move({connected(), start, strands}, found.pairs, move);
+        limit_move({offsets, start, strands}, found.pairs, move);
         std::vector<unsigned char> changed(start.size(), 0);
         for (size_t v = 0; v < start.size(); ++v)
             if (mesh.object[v] % 3 == 0) {
@@ -78,7 +76,7 @@ struct Crowd {
                 move.to[v] = start[v] + 0.3 * (move.to[v] - start[v]);
             }
         found.pairs.update({start, move.to}, changed);
-        const CcdReport report = limit_move({connected(), start, StrandLimit::whole}, found.pairs, move);
+        const CcdReport report = limit_move({offsets, start, StrandLimit::whole}, found.pairs, move);
         limited = move.to;
         return report;
     }

@@ -100,7 +100,7 @@ struct SpringScene {
     std::unique_ptr<LinearSystem> system;
     std::unique_ptr<Configuration> configuration;
     std::unique_ptr<ContactStiffness> stiffness;
-    std::vector<int> no_strands{0}, no_cloths;
+    std::vector<int> no_strands{0};
 
     void add_masses(std::vector<Vec3> at, double mass, double spring) {
         const int object = table.objects++, first = int(positions.size());
@@ -123,13 +123,12 @@ struct SpringScene {
         table.mesh.rest = positions;
         table.material.friction = {friction};
         table.material.stick_length = 1e-5;
-        no_cloths = {table.dynamic_vertices, table.dynamic_vertices};
         std::vector<Block *> all;
         for (const auto &block : masses) all.push_back(block.get());
         blocks = std::make_unique<BlockSet>(all, table);
         objective = std::make_unique<Objective>(*blocks, table);
         system = std::make_unique<LinearSystem>(*objective);
-        configuration = std::make_unique<Configuration>(table, no_strands, no_cloths, positions, radius);
+        configuration = std::make_unique<Configuration>(table, no_strands, positions, radius);
         stiffness = std::make_unique<ContactStiffness>(table.count());
     }
 
@@ -156,7 +155,7 @@ struct SpringScene {
         begin(dt, gravity);
         AlignedVector x = unknowns();
         Refinement refinement(*objective);
-        SceneReport report;
+        SceneReport report{};
         Newton newton(table, *objective, *system, *configuration, *stiffness);
         const SolverEffort effort =
             newton.minimise(start, {.iterations = iterations, .tolerance = 1e-12, .linear = {}}, refinement, x, report);

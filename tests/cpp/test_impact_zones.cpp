@@ -44,7 +44,7 @@ BOOST_AUTO_TEST_CASE(a_zone_moves_with_the_body_that_it_touches) {
     std::vector<Vec3> resolved = crowd.end;
     Crowd::Found found(crowd.mesh, {crowd.start, crowd.start});
     const auto advect = [](int, const Vec3 &point) { return Vec3(point + Vec3(0.0, 5e-3, 0.0)); };
-    AdvectedMove move(crowd.connected(), found.pairs, crowd.start, resolved);
+    AdvectedMove move(found.pairs, crowd.start, resolved);
     BOOST_TEST(!move.impacts().empty());
     resolve_impact_zones({View<double>(crowd.mass), advect}, move);
     BOOST_TEST(move.impacts().empty());

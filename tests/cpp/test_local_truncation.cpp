@@ -13,7 +13,7 @@ BOOST_AUTO_TEST_CASE(a_truncated_move_keeps_every_minimum_separation_and_all_tha
         if (crowd.closest(crowd.start) < 1e-5) continue;
         std::vector<Vec3> end = crowd.end;
         Crowd::Found found(crowd.mesh, {crowd.start, crowd.start});
-        AdvectedMove move(crowd.connected(), found.pairs, crowd.start, end);
+        AdvectedMove move(found.pairs, crowd.start, end);
         truncate_locally(move);
         BOOST_TEST(move.impacts().empty());
         BOOST_TEST(crowd.least_separation(end) > 1.0 - 1e-9);
@@ -27,7 +27,7 @@ BOOST_AUTO_TEST_CASE(strands_without_impacts_keep_every_bit_of_their_move) {
         if (crowd.mesh.object[v] >= 8) crowd.start[v].x() += 1.0, crowd.end[v] = crowd.start[v] + Vec3(0.01, 0.02, 0.0);
     std::vector<Vec3> end = crowd.end;
     Crowd::Found found(crowd.mesh, {crowd.start, crowd.start});
-    AdvectedMove move(crowd.connected(), found.pairs, crowd.start, end);
+    AdvectedMove move(found.pairs, crowd.start, end);
     BOOST_TEST(!move.impacts().empty());
     truncate_locally(move);
     for (size_t v = 0; v < end.size(); ++v)
@@ -45,7 +45,7 @@ BOOST_AUTO_TEST_CASE(a_whole_object_keeps_one_fraction_of_its_move) {
     for (const bool whole : {false, true}) {
         std::vector<Vec3> end = crowd.end;
         Crowd::Found found(crowd.mesh, {crowd.start, crowd.start});
-        AdvectedMove move(crowd.connected(), found.pairs, crowd.start, end);
+        AdvectedMove move(found.pairs, crowd.start, end);
         BOOST_TEST(!move.impacts().empty());
         truncate_locally(move, std::vector<unsigned char>{whole, 0});
         BOOST_TEST(!crowd.has_impacts(end));

@@ -4,16 +4,17 @@
 
 namespace ringlet {
 
-AdvectedMove::AdvectedMove(const ConnectedMesh &connected_, MoveCandidates &pairs, View<Vec3> start_, std::vector<Vec3> &end_)
-    : connected(connected_), start(start_), end(end_), pairs_(pairs), corrected_(end.size(), 0) {
+AdvectedMove::AdvectedMove(MoveCandidates &pairs, View<Vec3> start_, std::vector<Vec3> &end_)
+    : candidates(pairs.candidates()), mesh(candidates.mesh()), start(start_), end(end_), pairs_(pairs),
+      corrected_(end.size(), 0) {
     find_impacts();
     report_.candidates = pairs_.size(), report_.impacts = int(impacts_.size());
 }
 
 void AdvectedMove::find_impacts() {
     pairs_.begin({start, end});
-    impacts_ = ringlet::find_impacts(connected.mesh, pairs_.impact_candidates(), start, end);
-    mark_vertices(connected.mesh, impacts_, corrected_);
+    impacts_ = ringlet::find_impacts(mesh, pairs_.impact_candidates(), start, end);
+    mark_vertices(mesh, impacts_, corrected_);
 }
 
 CcdReport AdvectedMove::report() const {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "ringlet/ccd/impact.h"
-#include "ringlet/ccd/spread_correction.h"
 
 #include <utility>
 #include <vector>
@@ -13,9 +12,10 @@ namespace ringlet {
 // vertex moves straight from `start` to `end`.
 class AdvectedMove {
 public:
-    AdvectedMove(const ConnectedMesh &connected, MoveCandidates &pairs, View<Vec3> start, std::vector<Vec3> &end);
+    AdvectedMove(MoveCandidates &pairs, View<Vec3> start, std::vector<Vec3> &end);
 
-    const ConnectedMesh connected;
+    const Candidates &candidates;
+    const CollisionMesh &mesh;
     const View<Vec3> start; // [m]
     std::vector<Vec3> &end; // [m]
 

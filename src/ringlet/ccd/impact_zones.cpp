@@ -1,18 +1,17 @@
 #include "ringlet/ccd/impact_zones.h"
 
+#include "ringlet/ccd/spread_correction.h"
+
 #include <map>
-#include <numeric>
 
 namespace ringlet {
 
 ImpactZones::ImpactZones(const ImpactZonesInput &input, const AdvectedMove &move)
     : input_(input), move_(move), zones_(int(move.start.size())), in_zone_(move.start.size(), 0),
-      body_vertex_(move.start.size(), -1), all_strands_(move.connected.strands.size() - 1) {
-    std::iota(all_strands_.begin(), all_strands_.end(), 0);
-}
+      body_vertex_(move.start.size(), -1) {}
 
 void ImpactZones::merge(const std::vector<Impact> &impacts) {
-    const std::vector<unsigned char> &moves = move_.connected.mesh.moves;
+    const std::vector<unsigned char> &moves = move_.mesh.moves;
     for (const Impact &impact : impacts)
         for (const int i : impact.vertices)
             for (const int j : impact.vertices) {
@@ -37,7 +36,7 @@ void ImpactZones::correct(const std::vector<Impact> &impacts, bool keep_own) {
     std::map<int, Zone> zones; // with an impact
     for (const Impact &impact : impacts)
         for (const int v : impact.vertices)
-            if (move_.connected.mesh.moves[v]) {
+            if (move_.mesh.moves[v]) {
                 double &own = zones[zones_.find(v)].own;
                 own = keep_own ? std::min(own, impact.toi) : 0.0;
             }
@@ -56,7 +55,7 @@ void ImpactZones::correct(const std::vector<Impact> &impacts, bool keep_own) {
             corrections[v] = {1.0 - zone.own, zone.body_vertex >= 0 ? Vec3(input_.advect(zone.body_vertex, start[v]) - start[v])
                                                                     : Vec3(zone.moment / zone.mass)};
         }
-    spread_correction(move_.connected, start, end, {ccd::max_strain, ccd::max_strain}, all_strands_, corrections);
+    spread_correction(move_.candidates, start, end, ccd::max_strain, corrections);
 #pragma omp parallel for schedule(static)
     for (int v = 0; v < vertices; ++v)
         if (corrections[v].weight > 0.0) end[v] += corrections[v].weight * (start[v] + corrections[v].motion - end[v]);

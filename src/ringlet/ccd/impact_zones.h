@@ -39,7 +39,6 @@ private:
     DisjointSets zones_; // of vertices
     std::vector<unsigned char> in_zone_;
     std::vector<int> body_vertex_; // per vertex: a kinematic vertex that it had an impact with; −1: none
-    std::vector<int> all_strands_;
 };
 
 } // namespace ringlet

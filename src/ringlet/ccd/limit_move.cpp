@@ -1,6 +1,7 @@
 #include "ringlet/ccd/limit_move.h"
 
 #include "ringlet/ccd/settings.h"
+#include "ringlet/ccd/spread_correction.h"
 
 #include <algorithm>
 #include <functional>
@@ -15,9 +16,9 @@ constexpr size_t prefetched_pairs = 6; // loaded ahead of the one that is tested
 } // namespace
 
 MoveLimiter::MoveLimiter(const MoveLimits &limits, const MoveCandidates &pairs, PlannedMove &move)
-    : limits_(limits), pairs_(pairs), mesh_(limits.connected.mesh), move_(move),
-      strands_(int(limits.connected.strands.size()) - 1), transient_(pairs.transient_pairs()), fraction_(strands_, 1.0),
-      changed_(move.to.size(), 0) {
+    : limits_(limits), pairs_(pairs), mesh_(pairs.candidates().mesh()), move_(move), strands_(int(limits.offsets.size()) - 1),
+      any_cloths_(std::count(mesh_.moves.begin() + limits.offsets.back(), mesh_.moves.end(), 1) > 0),
+      transient_(pairs.transient_pairs()), fraction_(strands_, 1.0), changed_(move.to.size(), 0) {
     pairs_of_strand_ = {size_t(strands_), [&](const auto &add) {
                             const auto consider = [&](CandidatePair &pair) {
                                 const auto [a, b] = pair.object;
@@ -53,14 +54,13 @@ void MoveLimiter::resolve(const std::vector<Impact> &impacts) {
 }
 
 bool MoveLimiter::may_leave_impacts() const {
-    const bool any_cloths = limits_.connected.cloths.size() > 1;
-    return round_ > ccd::strand_rounds || corrected_locally_ || any_cloths || pairs_.any_escaped();
+    return round_ > ccd::strand_rounds || corrected_locally_ || any_cloths_ || pairs_.any_escaped();
 }
 
 // Corrects cloths, and strands that could hardly move, near their impacts. Returns these strands.
 std::vector<int> MoveLimiter::correct_locally(const std::vector<Impact> &impacts) {
     const bool any_strands = limits_.strands == StrandLimit::near_impacts && round_ < ccd::local_strand_rounds;
-    if (!any_strands && limits_.connected.cloths.size() <= 1) return {};
+    if (!any_strands && !any_cloths_) return {};
     std::map<int, double> fractions; // strand → fraction of its present motion up to its first impact
     std::vector<Correction> corrections(move_.to.size());
     for (const Impact &impact : impacts) {
@@ -77,15 +77,15 @@ std::vector<int> MoveLimiter::correct_locally(const std::vector<Impact> &impacts
             corrections[v].weight = std::max(corrections[v].weight, 1.0 - fraction);
         }
     }
-    const View<int> offsets = limits_.connected.strands;
+    const View<int> offsets = limits_.offsets;
     std::vector<int> corrected;
     for (const auto &[strand, fraction] : fractions)
         if (any_strands && fraction <= ccd::hardly_moves)
             corrected.push_back(strand);
         else
             std::fill(corrections.begin() + offsets[strand], corrections.begin() + offsets[strand + 1], Correction{});
-    const StrainLimit limit{ccd::max_strain, round_ < ccd::local_cloth_rounds ? ccd::max_strain : 0.0};
-    spread_correction(limits_.connected, limits_.start, move_.to, limit, corrected, corrections);
+    const double max_strain = round_ < ccd::local_cloth_rounds ? ccd::max_strain : 0.0;
+    spread_correction(pairs_.candidates(), limits_.start, move_.to, max_strain, corrections);
     for (int v = 0; v < int(corrections.size()); ++v)
         if (corrections[v].weight > 0.0) scale_motion(v, 1.0 - corrections[v].weight);
     return corrected;
@@ -120,7 +120,7 @@ void MoveLimiter::prefetch(View<CandidatePair *> pairs, size_t k) const {
 // Adds the events of the impacts that this causes.
 void MoveLimiter::limit_strand(int strand, double fraction, std::vector<Event> &events) {
     if (fraction >= fraction_[strand]) return;
-    const View<int> offsets = limits_.connected.strands;
+    const View<int> offsets = limits_.offsets;
     const double factor = fraction / fraction_[strand];
     for (int v = offsets[strand]; v < offsets[strand + 1]; ++v)
         if (mesh_.moves[v]) scale_motion(v, factor);
@@ -172,8 +172,8 @@ void MoveLimiter::scale_motion(int v, double factor) {
 }
 
 CcdReport limit_move(const MoveLimits &limits, MoveCandidates &pairs, PlannedMove &move) {
-    const CollisionMesh &mesh = limits.connected.mesh;
-    const int max_rounds = int(limits.connected.strands.size() + limits.connected.cloths.size()) + ccd::spare_rounds;
+    const CollisionMesh &mesh = pairs.candidates().mesh();
+    const int max_rounds = (mesh.object.empty() ? 0 : mesh.object.back() + 1) + ccd::spare_rounds;
     const auto path = [&] { return Move{limits.start, move.to, move.apex}; };
     CcdReport report;
     std::vector<unsigned char> corrected(move.to.size(), 0);

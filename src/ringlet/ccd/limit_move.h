@@ -2,7 +2,6 @@
 #pragma once
 
 #include "ringlet/ccd/impact.h"
-#include "ringlet/ccd/spread_correction.h"
 
 #include <vector>
 
@@ -21,8 +20,8 @@ enum class StrandLimit {
 };
 
 struct MoveLimits {
-    ConnectedMesh connected;
-    View<Vec3> start; // [m]
+    View<int> offsets; // first vertex of each strand, and the end; strands are the first objects of the mesh
+    View<Vec3> start;  // [m]
     StrandLimit strands = StrandLimit::near_impacts;
 };
 
@@ -78,6 +77,7 @@ private:
     const CollisionMesh &mesh_;
     PlannedMove &move_;
     int strands_, round_ = 0;
+    bool any_cloths_;                         // other objects that move
     bool corrected_locally_ = false;          // in any round: what was known of impacts no longer holds
     std::vector<CandidatePair> transient_;    // as in the first round; later rounds change those of the cache
     Lists<CandidatePair *> pairs_of_strand_;  // pairs with another strand that may close on their paths

@@ -1,8 +1,7 @@
 #include "ringlet/ccd/local_truncation.h"
 
 #include "ringlet/ccd/settings.h"
-
-#include <numeric>
+#include "ringlet/ccd/spread_correction.h"
 
 namespace ringlet {
 namespace {
@@ -31,9 +30,7 @@ void spread_over_objects(const CollisionMesh &mesh, View<unsigned char> whole, s
 } // namespace
 
 void truncate_locally(AdvectedMove &move, View<unsigned char> whole) {
-    const CollisionMesh &mesh = move.connected.mesh;
-    std::vector<int> strands(move.connected.strands.size() - 1);
-    std::iota(strands.begin(), strands.end(), 0);
+    const CollisionMesh &mesh = move.mesh;
     for (int round = 0; !move.impacts().empty(); ++round)
         move.round([&](const std::vector<Impact> &impacts) {
             std::vector<Correction> corrections(move.end.size());
@@ -47,7 +44,7 @@ void truncate_locally(AdvectedMove &move, View<unsigned char> whole) {
                 }
             spread_over_objects(mesh, whole, corrections);
             if (round >= ccd::vertex_rounds) mark_objects(mesh, vertices, round >= ccd::object_rounds, corrections);
-            spread_correction(move.connected, move.start, move.end, {ccd::max_strain, ccd::max_strain}, strands, corrections);
+            spread_correction(move.candidates, move.start, move.end, ccd::max_strain, corrections);
             for (size_t v = 0; v < corrections.size(); ++v) {
                 const double weight = corrections[v].weight;
                 if (weight == 1.0)

@@ -29,7 +29,7 @@ inline constexpr double before_impact = 0.98; // of the time at which a strand m
 inline constexpr int strand_rounds = 8;       // then strands with impacts rest
 inline constexpr int local_strand_rounds = 2; // in which strands that could hardly move are corrected locally
 inline constexpr int local_cloth_rounds = 16; // in which corrections of cloth are spread; then whole cloths rest
-inline constexpr int spare_rounds = 16;       // beyond one for each strand and cloth
+inline constexpr int spare_rounds = 16;       // beyond one for each object
 inline constexpr double hardly_moves = 0.2;   // a strand that keeps no more of its motion is corrected locally
 
 // resolve_impact_zones

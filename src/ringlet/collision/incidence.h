@@ -1,4 +1,4 @@
-// Incidence of a collision mesh: the neighbours, edges and triangles of each vertex.
+// Incidence of a collision mesh: the edges and triangles of each vertex.
 #pragma once
 
 #include "ringlet/collision/mesh.h"
@@ -11,14 +11,6 @@
 namespace ringlet {
 
 using VertexLists = Lists<int>;
-
-// The vertices that share an edge with a vertex, for vertices from `first` up to `end`; others have none.
-inline VertexLists neighbours(const CollisionMesh &mesh, int first, int end) {
-    return {mesh.moves.size(), [&](const auto &add) {
-                for (const auto &[a, b] : mesh.edges)
-                    if (std::min(a, b) >= first && std::max(a, b) < end) add(a, b), add(b, a);
-            }};
-}
 
 // The primitives of each vertex.
 template <size_t N> VertexLists primitives_of(size_t vertices, const std::vector<std::array<int, N>> &primitives) {

@@ -15,6 +15,7 @@ namespace ringlet {
 class MoveCandidates {
 public:
     explicit MoveCandidates(Candidates &candidates);
+    const Candidates &candidates() const { return candidates_; }
 
     // Begins a move from the present positions, for which there are bounds. Until it is committed its end may change: to points
     // in the triangle of start, first end and apex, or without an apex of start and first end.

@@ -73,8 +73,7 @@ public:
     // `motion` starts where the configuration is; `end` is where all vertices are to go.
     Attempt(const PrescribedMotion &motion, std::vector<Vec3> end, Configuration &configuration)
         : motion_(motion), vertices_(motion.vertices), end_(std::move(end)), through_space_(vertices_.objects, 0),
-          islands_(vertices_.objects + body_count()),
-          move_(configuration.connected(), configuration.pairs, motion.start, end_) {
+          islands_(vertices_.objects + body_count()), move_(configuration.pairs, motion.start, end_) {
         join_islands();
     }
 

@@ -6,11 +6,9 @@
 
 namespace ringlet {
 
-Configuration::Configuration(const VertexTable &table, View<int> strands, View<int> cloths, std::vector<Vec3> positions_,
-                             double strand_radius)
+Configuration::Configuration(const VertexTable &table, View<int> strands, std::vector<Vec3> positions_, double strand_radius)
     : positions(std::move(positions_)), candidates(table.mesh), pairs(candidates), table_(table), strands_(strands),
-      cloths_(cloths), cloth_neighbours_(neighbours(table.mesh, cloths.front(), cloths.back())), strand_radius_(strand_radius) {
-}
+      strand_radius_(strand_radius) {}
 
 void Configuration::begin(const Move &move, Candidates::Serve serve) {
     candidates.enclose(move, {solver_settings::bound_margin * strand_radius_, solver_settings::max_bound_length}, serve);
@@ -42,7 +40,7 @@ void Configuration::limit_again(PlannedMove &move, StrandLimit strands, View<uns
 }
 
 void Configuration::limit_begun(PlannedMove &move, StrandLimit strands, SceneReport &report) {
-    add(limit_move({connected(), positions, strands}, pairs, move), report);
+    add(limit_move({strands_, positions, strands}, pairs, move), report);
 }
 
 void Configuration::add(const CcdReport &limited, SceneReport &report) {

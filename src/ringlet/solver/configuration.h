@@ -12,9 +12,8 @@ namespace ringlet {
 
 class Configuration {
 public:
-    // `strands` and `cloths` say where each begins among the vertices, and the end; corrections spread along them.
-    Configuration(const VertexTable &table, View<int> strands, View<int> cloths, std::vector<Vec3> positions,
-                  double strand_radius);
+    // `strands` says where each begins among the vertices, and the end.
+    Configuration(const VertexTable &table, View<int> strands, std::vector<Vec3> positions, double strand_radius);
 
     std::vector<Vec3> positions;
     Candidates candidates;
@@ -22,8 +21,6 @@ public:
 
     // The pairs that are nearer than their activation distance.
     std::vector<ContactPair> contact_pairs();
-
-    ConnectedMesh connected() const { return {table_.mesh, strands_, cloths_, &cloth_neighbours_}; }
 
     // Shortens a move so that no pair comes closer than it may.
     void limit(PlannedMove &move, StrandLimit strands, Candidates::Serve serve, SceneReport &report);
@@ -49,8 +46,7 @@ private:
     void add_to_record();
 
     const VertexTable &table_;
-    View<int> strands_, cloths_;
-    VertexLists cloth_neighbours_;
+    View<int> strands_;
     double strand_radius_;
     bool recording_ = false;
     std::vector<std::vector<Vec3>> recorded_;
