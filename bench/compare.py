@@ -21,7 +21,8 @@ MAIN = "import sys; from ringlet.cli import main; sys.exit(main())"
 def run(words: tuple[str, ...] = (), turns: int = 3) -> dict[str, Any]:
     """Compares processor times per evaluation: ``ringlet bench compare COMMIT NAME…``.
 
-    words: a commit, and benchmarks with their parameters, such as "twirl --strands 256 --threads 1"
+    words: a commit, and benchmarks with their parameters, such as "twirl --strands 256 --threads 1";
+           "twirl --newton 5 against twirl" runs what stands before "against" at the commit, the rest here
     turns: runs of each of the two, one after the other
     """
     if len(words) < 2:
@@ -31,8 +32,11 @@ def run(words: tuple[str, ...] = (), turns: int = 3) -> dict[str, Any]:
     times: dict[str, tuple[list[float], list[float]]] = {name: ([], []) for name in names}
     for _ in range(turns):
         for name in names:
-            for python, taken in zip((there, sys.executable), times[name], strict=True):
-                taken.append(measured(str(python), name))
+            before, _, now = name.partition(" against ")
+            for python, benchmark, taken in zip(
+                (there, sys.executable), (before, now or before), times[name], strict=True
+            ):
+                taken.append(measured(str(python), benchmark))
     return {name: row(commit, *both) for name, both in times.items()}
 
 
