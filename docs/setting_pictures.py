@@ -346,7 +346,7 @@ def panel(curves: Lines, left: int, words: str, view: View) -> str:
     lines = []
     for number, curve in enumerate(curves):
         kept = np.unique(np.linspace(0, len(curve) - 1, max(POINTS, len(curve) // 2)).round().astype(int))
-        places = " ".join(f"{left + x:.1f},{y:.1f}" for x, y in curve[kept])
+        places = " ".join(f"{left + x:.1f},{y:.1f}" for x, y in curve[kept].tolist())
         lines.append(f'<polyline points="{places}" stroke="hsl(25 40% {30 + 25 * number // len(curves)}%)"/>')
     clip = f'<clipPath id="p{left}"><rect x="{left}" y="0" width="{width}" height="{height}"/></clipPath>'
     hair = f'<g fill="none" stroke-width="0.9" stroke-linejoin="round">{"".join(lines)}</g>'

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from collections import Counter
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -382,51 +383,59 @@ def test_a_hundred_kills_outside_writes_and_leaving_pages_lose_nothing(folder: P
 
     monkeypatch.setattr(Session, "_record", mortal)
     monkeypatch.setattr(Grooming, "request", lambda grooming, **_: None)  # the groom is no part of this
-    recipe = folder / "small.recipe.toml"
-
-    def start() -> Session:
-        return Session(recipe, Project(folder))
-
     here, there = ("width", "phase", "irregularity", "kink", "wave"), ("pitch", "start", "flatness", "taper", "end")
-    session, client, pages = start(), Client(0), 1
-    client.join(session)
-    kills = writes = leaves = 0
-    locks = 115  # the files grow with each
-    for lock in range(locks):
-        if session.files.recipe.theirs is not None:
-            client.say(session, _merge(session))
-        change = protocol.Set(changes=[(["curl", here[lock % len(here)], "lock", str(lock)], 0.5)], gesture=lock)
-        dying[0] = chance.choice(["", *4 * ["before", "after"]])
-        try:
-            if chance.random() < 0.3:
-                client.say(session, protocol.Save())
-            client.say(session, change)
-        except Killed:
-            kills += 1
-            said = change in client.owed
-            session = start()
-            client.join(session)
-            if not said:
+
+    def edited(recipe: Path, locks: int) -> Counter[str]:
+        """Edits a recipe and returns how often what happened; nothing is lost."""
+
+        def start() -> Session:
+            return Session(recipe, Project(folder))
+
+        session, client, happened = start(), Client(0), Counter[str]()
+        client.join(session)
+        for lock in range(locks):
+            if session.files.recipe.theirs is not None:
+                client.say(session, _merge(session))
+            change = protocol.Set(changes=[(["curl", here[lock % len(here)], "lock", str(lock)], 0.5)], gesture=lock)
+            dying[0] = chance.choice(["", *4 * ["before", "after"]])
+            try:
+                if chance.random() < 0.3:
+                    client.say(session, protocol.Save())
                 client.say(session, change)
-        if chance.random() < 0.5:
-            writes += 1
-            recipe.write_text(set_value(recipe.read_text(), ["curl", there[lock % len(there)], "lock", str(lock)], 0.5))
-            if chance.random() < 0.5:  # the watcher sees it
-                session._disk.meet({recipe})
-        if chance.random() < 0.5:
-            leaves += 1
-            session.leave(client.page)
-            client, pages = Client(pages), pages + 1
-            client.join(session)
-    assert kills >= 100 and min(writes, leaves) > 50
-    session.files.meet_disk("recipe")
-    if session.files.recipe.theirs is not None:
-        session.handle(client.page, _merge(session))
-    session.handle(client.page, protocol.Save())
-    curl = read_recipe(recipe).curl
-    assert curl is not None
-    assert sorted(int(lock) for name in here for lock in getattr(curl, name).lock) == list(range(locks))
-    assert sum(len(getattr(curl, name).lock) for name in there) == writes
+            except Killed:
+                happened["kills"] += 1
+                said = change in client.owed
+                session = start()
+                client.join(session)
+                if not said:
+                    client.say(session, change)
+            if chance.random() < 0.5:
+                happened["writes"] += 1
+                place: list[str | int] = ["curl", there[lock % len(there)], "lock", str(lock)]
+                recipe.write_text(set_value(recipe.read_text(), place, 0.5))
+                if chance.random() < 0.5:  # the watcher sees it
+                    session._disk.meet({recipe})
+            if chance.random() < 0.5:
+                happened["leaves"] += 1
+                session.leave(client.page)
+                client = Client(happened["leaves"])
+                client.join(session)
+        session.files.meet_disk("recipe")
+        if session.files.recipe.theirs is not None:
+            session.handle(client.page, _merge(session))
+        session.handle(client.page, protocol.Save())
+        curl = read_recipe(recipe).curl
+        assert curl is not None
+        assert sorted(int(lock) for name in here for lock in getattr(curl, name).lock) == list(range(locks))
+        assert sum(len(getattr(curl, name).lock) for name in there) == happened["writes"]
+        return happened
+
+    happened = Counter[str]()
+    for part in range(5):  # files grow with each lock, and with them the time of an edit
+        recipe = folder / f"part{part}.recipe.toml"
+        recipe.write_text((folder / "small.recipe.toml").read_text())
+        happened += edited(recipe, 23)
+    assert happened["kills"] >= 100 and min(happened["writes"], happened["leaves"]) > 50
 
 
 def _merge(session: Session) -> protocol.Resolve:
