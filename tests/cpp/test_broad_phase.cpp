@@ -104,6 +104,25 @@ BOOST_AUTO_TEST_CASE(candidates_do_not_depend_on_threads_or_earlier_queries) {
     BOOST_TEST((names(one) == names(four)));
 }
 
+BOOST_AUTO_TEST_CASE(pairs_of_escaped_vertices_do_not_depend_on_who_escaped_before) {
+    const CollisionScene scene(6, 0.1);
+    const size_t count = scene.start.size();
+    SweptBoxes bounds(scene.mesh), move(scene.mesh);
+    bounds.fit_static(scene.start, scene.start);
+    move.fit({scene.start, scene.end}, bounds.origin());
+    std::vector<unsigned char> some(count), others(count);
+    for (size_t v = 0; v < count; ++v) some[v] = v % 3 == 0, others[v] = v % 5 == 0;
+    BroadPhase before(scene.mesh), between(scene.mesh), fresh(scene.mesh);
+    for (BroadPhase *broad : {&before, &between, &fresh}) broad->fit(bounds);
+    const Pairs escaped = names(fresh.find_escaped(move, bounds, others, others));
+    BOOST_TEST(escaped.size() > 50);
+    BOOST_TEST((names(before.find_escaped(move, bounds, some, some)) != escaped));
+    BOOST_TEST((names(before.find_escaped(move, bounds, others, others)) == escaped));
+    fresh.fit(bounds);
+    between.find_escaped(move, bounds, some, some);
+    BOOST_TEST((names(between.find_changed(bounds, others)) == names(fresh.find_changed(bounds, others))));
+}
+
 BOOST_AUTO_TEST_CASE(a_hierarchy_that_has_grown_loose_is_rebuilt) {
     CollisionScene scene(3, 0.1);
     BroadPhase broad(scene.mesh);

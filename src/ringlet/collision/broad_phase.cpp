@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numeric>
 #include <type_traits>
+#include <utility>
 
 namespace ringlet {
 namespace {
@@ -40,6 +41,7 @@ void cull_edges(const Bvh &edges, const SweptBoxes &boxes, const SweptBoxes *mov
 
 BroadPhase::BroadPhase(const CollisionMesh &mesh) : mesh_(mesh), incidence_(mesh) {
     point_of_.assign(mesh.moves.size(), -1);
+    escaped_.assign(mesh.moves.size(), 0);
     for (int v : mesh.points) {
         point_of_[v] = int(points_.size());
         points_.push_back({v});
@@ -53,6 +55,7 @@ template <class Work> void BroadPhase::for_trees(const Work &work) {
 }
 
 void BroadPhase::fit(const SweptBoxes &boxes) {
+    std::fill(escaped_.begin(), escaped_.end(), 0);
     for_trees([&](Bvh &tree, const auto &primitives, const auto &box_of) {
         tree.fit(int(primitives.size()), [&](int i) {
             SweptBox box = box_of(boxes, i);
@@ -62,7 +65,10 @@ void BroadPhase::fit(const SweptBoxes &boxes) {
     });
 }
 
-template <class Boxes> void BroadPhase::refit(const MeshSubset &subset, View<unsigned char> changed, const Boxes &boxes_of) {
+// Fits the hierarchies to new boxes of `stale` vertices; only primitives with a changed vertex, which is one of them, are
+// active then.
+template <class Boxes> void BroadPhase::refit(View<unsigned char> stale, View<unsigned char> changed, const Boxes &boxes_of) {
+    const MeshSubset subset(mesh_, incidence_, stale);
     std::vector<int> points;
     for (const int v : subset.vertices)
         if (point_of_[v] >= 0) points.push_back(point_of_[v]);
@@ -81,19 +87,20 @@ template <class Boxes> void BroadPhase::refit(const MeshSubset &subset, View<uns
 }
 
 std::vector<PrimitivePair> BroadPhase::find_changed(const SweptBoxes &boxes, View<unsigned char> changed) {
-    refit(MeshSubset(mesh_, incidence_, changed), changed, [&](const auto &) -> const SweptBoxes & { return boxes; });
+    std::vector<unsigned char> stale = std::exchange(escaped_, std::vector<unsigned char>(escaped_.size(), 0));
+    for (size_t v = 0; v < stale.size(); ++v) stale[v] |= changed[v];
+    refit(stale, changed, [&](const auto &) -> const SweptBoxes & { return boxes; });
     return search_all(boxes);
 }
 
 std::vector<PrimitivePair> BroadPhase::find_escaped(const SweptBoxes &move, const SweptBoxes &bounds,
                                                     View<unsigned char> escaped, View<unsigned char> changed) {
-    std::vector<unsigned char> either(changed.begin(), changed.end());
-    for (size_t v = 0; v < either.size(); ++v) either[v] |= escaped[v];
-    const MeshSubset subset(mesh_, incidence_, either);
-    refit(subset, changed,
+    std::vector<unsigned char> stale(changed.begin(), changed.end());
+    for (size_t v = 0; v < stale.size(); ++v) stale[v] |= escaped[v] != escaped_[v];
+    escaped_.assign(escaped.begin(), escaped.end());
+    refit(stale, changed,
           [&](const auto &vertices) -> const SweptBoxes & { return any_of(escaped, vertices) ? move : bounds; });
     std::vector<PrimitivePair> found = search_all(move);
-    refit(subset, changed, [&](const auto &) -> const SweptBoxes & { return bounds; });
     std::erase_if(found, [&](const PrimitivePair &pair) {
         return with_vertices(mesh_, pair,
                              [&](const auto &a, const auto &b) { return !any_of(escaped, a) && !any_of(escaped, b); });

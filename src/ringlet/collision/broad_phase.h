@@ -36,7 +36,8 @@ public:
     std::vector<PrimitivePair> find_changed(const SweptBoxes &boxes, View<unsigned char> changed);
 
     // After a fit to `bounds`: the pairs with an `escaped` and a `changed` vertex, where escaped vertices have their boxes of
-    // `move` and all others those of `bounds`. Both have one origin.
+    // `move` and all others those of `bounds`. Both have one origin. Of an unchanged vertex that had escaped in the last query,
+    // the box of that query counts.
     std::vector<PrimitivePair> find_escaped(const SweptBoxes &move, const SweptBoxes &bounds, View<unsigned char> escaped,
                                             View<unsigned char> changed);
 
@@ -48,7 +49,7 @@ private:
 
     // Calls work(tree, primitives, box_of) for edges, points and triangles, with box_of(boxes, i).
     template <class Work> void for_trees(const Work &work);
-    template <class Boxes> void refit(const MeshSubset &subset, View<unsigned char> changed, const Boxes &boxes_of);
+    template <class Boxes> void refit(View<unsigned char> stale, View<unsigned char> changed, const Boxes &boxes_of);
     std::vector<PrimitivePair> search_all(const SweptBoxes &boxes, const SweptBoxes *move = nullptr);
     template <class A, class B>
     void search(const Bvh &tree_a, const A &all_a, const Bvh &tree_b, const B &all_b, const SweptBoxes &boxes,
@@ -57,7 +58,8 @@ private:
 
     const CollisionMesh &mesh_;
     std::vector<std::array<int, 1>> points_;
-    std::vector<int> point_of_; // a vertex; −1: none
+    std::vector<int> point_of_;          // a vertex; −1: none
+    std::vector<unsigned char> escaped_; // vertices whose boxes in the hierarchies are those of a move
     Incidence incidence_;
     Bvh edge_tree_, triangle_tree_, point_tree_;
     std::vector<Pairs> found_; // by each task
