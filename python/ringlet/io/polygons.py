@@ -51,8 +51,10 @@ def triangulate(
     cuts = np.cumsum(counts - 2) - (counts - 2)
     step = np.arange(len(faces)) - cuts[faces]
     triangles = starts[faces][:, None] + np.stack([np.zeros_like(step), step + 1, step + 2], axis=1)
-    places = np.asarray(points, np.float64)[indices[corners]]
     more = counts[faces] > 3
+    if not more.any():
+        return corners[triangles], faces
+    places = np.asarray(points, np.float64)[indices[corners]]
     folded, normals = _folded(places, triangles[more], faces[more], len(counts))
     quads = folded[counts[folded] == 4]
     for half, local in enumerate(([0, 1, 3], [1, 2, 3])):  # the other diagonal
@@ -135,5 +137,5 @@ def polygon_places(counts: NDArray) -> NDArray[np.float64]:
     """
     polygon = np.repeat(np.arange(len(counts)), counts)
     local = np.arange(len(polygon)) - (np.cumsum(counts) - counts)[polygon]
-    triangle, quad = np.array([[0, 0], [1, 0], [0, 1]], float), np.array([[0, 0], [0, 1], [1, 1], [1, 0]], float)
-    return np.where((counts[polygon] == 3)[:, None], triangle[np.minimum(local, 2)], quad[np.minimum(local, 3)])
+    triangle, quad = [[0, 0], [1, 0], [0, 1]], [[0, 0], [0, 1], [1, 1], [1, 0]]
+    return np.array(triangle + quad, float)[np.where(counts[polygon] == 3, local, 3 + np.minimum(local, 3))]
