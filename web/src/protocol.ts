@@ -310,7 +310,6 @@ export interface Isolate {
 /** Moves a brush over the guides, or returns guides to the recipe. */
 export interface Sculpt {
   kind: "sculpt";
-  tool: "grab" | "comb" | "smooth" | "cut" | "lengthen" | "return" | "freeze" | "thaw";
   at: [number, number, number];
   by: [number, number, number];
   radius: number;
@@ -319,6 +318,7 @@ export interface Sculpt {
   falloff?: "smooth" | "sharp" | "flat";
   gesture: number;
   resting?: boolean;
+  tool: "grab" | "comb" | "smooth" | "cut" | "lengthen" | "return" | "freeze" | "thaw";
 }
 
 /** Removes the sculpts of all guides. */
@@ -335,8 +335,6 @@ export interface ShowMap {
 /** Moves a brush over the scalp, which changes the map that a setting names; a setting without one gets a new map. */
 export interface Paint {
   kind: "paint";
-  place: (string | number)[];
-  tool: "add" | "remove" | "smooth" | "comb";
   at: [number, number, number];
   by: [number, number, number];
   radius: number;
@@ -345,6 +343,8 @@ export interface Paint {
   falloff?: "smooth" | "sharp" | "flat";
   gesture: number;
   resting?: boolean;
+  place: (string | number)[];
+  tool: "add" | "remove" | "smooth" | "comb";
 }
 
 /** Draws the helper curve that a setting names; a setting without one gets a new curve, a list one more. */

@@ -20,7 +20,7 @@ from ringlet.viewer.protocol.message import (
     Row,
     Shared,
 )
-from ringlet.viewer.protocol.painting import Draw, Paint, ShowMap
+from ringlet.viewer.protocol.painting import Draw, Paint, ShowMap, Stroke
 from ringlet.viewer.protocol.presets import Keep, ListPresets, Take, Try
 from ringlet.viewer.protocol.render import Render, StopRender
 from ringlet.viewer.protocol.review import ReviewMessage
@@ -226,28 +226,16 @@ class Isolate(Message):
     out: bool = True
 
 
-class Sculpt(Message):
+class Sculpt(Stroke):
     """Moves a brush over the guides, or returns guides to the recipe.
 
-    at, by:   position of the brush, and its displacement since the last message of this gesture [m]
-    radius:   radius of the brush [m]
-    mirrored: whether a mirror image of the brush acts on the other side of the head
     strength: fraction of its displacement that the brush moves what is at its centre
-    falloff:  of the strength towards the radius: smooth, sharp (steep at the centre) or flat (none)
 
     ``freeze`` protects guides from all brushes, ``thaw`` ends that; neither is stored in the file.
     """
 
     kind: Literal["sculpt"] = "sculpt"
     tool: Literal["grab", "comb", "smooth", "cut", "lengthen", "return", "freeze", "thaw"]
-    at: Position
-    by: Position
-    radius: float = Field(gt=0.0, le=1.0)
-    mirrored: bool = False
-    strength: float = Field(default=1.0, gt=0.0, le=1.0)
-    falloff: Literal["smooth", "sharp", "flat"] = "smooth"
-    gesture: Gesture
-    resting: bool = True
 
 
 class Look(Shared):

@@ -19,18 +19,15 @@ class ShowMap(Message):
     place: Place = Field(min_length=1, max_length=8)
 
 
-class Paint(Message):
-    """Moves a brush over the scalp, which changes the map that a setting names; a setting without one gets a new map.
+class Stroke(Message):
+    """Moves a brush.
 
-    at:       centre of the brush [m]; by: its displacement since the last message of this gesture [m]
-    tool:     add goes to white (1), remove to black (0) or no direction, smooth to the mean around, comb to the
-              direction in which the brush moves
-    strength: fraction of the way that one pass of the brush goes at its centre
+    at, by:   position of the brush, and its displacement since the last message of this gesture [m]
+    radius:   radius of the brush [m]
+    mirrored: whether a mirror image of the brush acts on the other side of the head
+    falloff:  of the strength towards the radius: smooth, sharp (steep at the centre) or flat (none)
     """
 
-    kind: Literal["paint"] = "paint"
-    place: Place = Field(min_length=1, max_length=8)
-    tool: Literal["add", "remove", "smooth", "comb"]
     at: Position
     by: Position
     radius: float = Field(gt=0.0, le=1.0)
@@ -39,6 +36,19 @@ class Paint(Message):
     falloff: Literal["smooth", "sharp", "flat"] = "smooth"
     gesture: Gesture
     resting: bool = True
+
+
+class Paint(Stroke):
+    """Moves a brush over the scalp, which changes the map that a setting names; a setting without one gets a new map.
+
+    tool:     add goes to white (1), remove to black (0) or no direction, smooth to the mean around, comb to the
+              direction in which the brush moves
+    strength: fraction of the way that one pass of the brush goes at its centre
+    """
+
+    kind: Literal["paint"] = "paint"
+    place: Place = Field(min_length=1, max_length=8)
+    tool: Literal["add", "remove", "smooth", "comb"]
 
 
 class Draw(Message):
