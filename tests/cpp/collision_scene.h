@@ -87,7 +87,8 @@ inline bool has_impact(const CollisionMesh &mesh, const PrimitivePair &pair, con
         for (const int v : a) x[i] = start[v], p[i++] = end[v] - start[v];
         for (const int v : b) x[i] = start[v], p[i++] = end[v] - start[v];
         const double kept = collision::impact_distance * pair.d_hat;
-        return (pair.edge_edge ? edge_edge_toi(x, p, kept) : point_triangle_toi(x, p, kept)) <= 1.0;
+        return (pair.edge_edge ? accd::toi<2>(x, p, kept, accd::closest<2>(x))
+                               : accd::toi<1>(x, p, kept, accd::closest<1>(x))) <= 1.0;
     });
 }
 

@@ -1,7 +1,5 @@
 // The rules of Newton's method: damping, stopping, and what is tried with objects that do not move.
-#include "ringlet/solver/relative_damping.h"
-#include "ringlet/solver/stall.h"
-#include "ringlet/solver/stopping_rule.h"
+#include "ringlet/solver/newton_rules.h"
 #include "spring_masses.h"
 
 #include <boost/test/unit_test.hpp>

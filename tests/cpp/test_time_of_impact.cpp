@@ -9,7 +9,8 @@ using namespace ringlet;
 namespace {
 
 double toi(bool edges, const Four &x, const Four &p, double min_separation) {
-    return (edges ? edge_edge_toi : point_triangle_toi)(x.data(), p.data(), min_separation);
+    return edges ? accd::toi<2>(x.data(), p.data(), min_separation, accd::closest<2>(x.data()))
+                 : accd::toi<1>(x.data(), p.data(), min_separation, accd::closest<1>(x.data()));
 }
 
 Four at(const Four &x, const Four &p, double t) { return {x[0] + t * p[0], x[1] + t * p[1], x[2] + t * p[2], x[3] + t * p[3]}; }

@@ -64,7 +64,7 @@ void ImpactZones::correct(const std::vector<Impact> &impacts, bool keep_own) {
 void resolve_impact_zones(const ImpactZonesInput &input, AdvectedMove &move) {
     if (move.impacts().empty()) return;
     ImpactZones zones(input, move);
-    for (int round = 0; round < input.rounds && !move.impacts().empty(); ++round)
+    for (int round = 0; round < ccd::zone_rounds && !move.impacts().empty(); ++round)
         move.round([&](const std::vector<Impact> &impacts) {
             zones.merge(impacts);
             zones.correct(impacts, round < ccd::own_motion_rounds);

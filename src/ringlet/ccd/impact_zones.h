@@ -14,7 +14,6 @@ struct ImpactZonesInput {
     View<double> mass; // per vertex [kg]
     // Where a point ends that is advected with a kinematic vertex.
     std::function<Vec3(int vertex, const Vec3 &point)> advect;
-    int rounds = ccd::max_zone_rounds;
 };
 
 // Corrects a move by zones for some rounds; impacts may be left. Vertices of impacts form zones; a zone moves as the body that

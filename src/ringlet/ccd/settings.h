@@ -33,7 +33,7 @@ inline constexpr int spare_rounds = 16;       // beyond one for each object
 inline constexpr double hardly_moves = 0.2;   // a strand that keeps no more of its motion is corrected locally
 
 // resolve_impact_zones
-inline constexpr int max_zone_rounds = 16;
+inline constexpr int zone_rounds = 6;
 inline constexpr int own_motion_rounds = 3; // in which zones keep their own motion up to the impact
 
 // truncate_locally

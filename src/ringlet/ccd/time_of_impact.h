@@ -25,7 +25,9 @@ template <int First> ClosestPoints closest(const Vec3 x[4]) {
     return (First == 2 ? closest_edge_edge : closest_point_triangle)(x[0], x[1], x[2], x[3]);
 }
 
-// `nearest` are the closest points at the start.
+// x: the four vertices [m]; p: their displacements [m] along straight paths, for times from 0 to 1. Returns a time in [0, 1]
+// until which the distance stays above `min_separation`, or `no_impact` if it always does. A pair in relative motion that
+// begins no farther apart than `min_separation` has time of impact 0. `nearest` are the closest points at the start.
 template <int First> double toi(const Vec3 x[4], const Vec3 p[4], double min_separation, ClosestPoints nearest) {
     std::array<Vec3, 4> start, motion; // relative to the last vertex
     double motion2 = 0.0;
@@ -74,16 +76,5 @@ template <int First> double toi(const Vec3 x[4], const Vec3 p[4], double min_sep
 }
 
 } // namespace accd
-
-// x: the four vertices [m]; p: their displacements [m] along straight paths, for times from 0 to 1. Returns a time in [0, 1]
-// until which the distance stays above `min_separation`, or `no_impact` if it always does. A pair in relative motion that
-// begins no farther apart than `min_separation` has time of impact 0.
-inline double edge_edge_toi(const Vec3 x[4], const Vec3 p[4], double min_separation) {
-    return accd::toi<2>(x, p, min_separation, accd::closest<2>(x)); // vertices: a0 a1, b0 b1
-}
-
-inline double point_triangle_toi(const Vec3 x[4], const Vec3 p[4], double min_separation) {
-    return accd::toi<1>(x, p, min_separation, accd::closest<1>(x)); // vertices: the point, then the triangle's
-}
 
 } // namespace ringlet

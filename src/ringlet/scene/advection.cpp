@@ -87,8 +87,7 @@ public:
             return motion_.is_behind(vertex) ? Vec3(point + motion_.target[vertex] - motion_.start[vertex])
                                              : motion_.carry(vertex, point);
         };
-        resolve_impact_zones(
-            {vertices_.mass, follow_body, body_count() > 0 ? scene_settings::zone_rounds : ccd::max_zone_rounds}, move_);
+        resolve_impact_zones({vertices_.mass, follow_body}, move_);
         join_islands();
     }
 

@@ -8,7 +8,6 @@ inline constexpr int max_patches = 96;          // rigid patches of all bodies
 inline constexpr int vertices_of_patch = 16;    // at least, to determine a rotation
 inline constexpr double same_place2 = 1e-20;    // [m²]: vertices that follow a rigid motion end no farther from it
 inline constexpr int motion_samples = 1000;     // vertices that determine the motion of most
-inline constexpr int zone_rounds = 6;           // of impact zones, where there are bodies
 inline constexpr double affine = 1e-3;          // deviation from an affine motion, of a body's extent
 inline constexpr double thin2 = 1e-12;          // square of the thickness at which a body is flat, of its length
 inline constexpr double dent_deviation = 0.2;   // of its surface from a body's own motion, relative to that of most

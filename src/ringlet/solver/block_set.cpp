@@ -45,8 +45,6 @@ void BlockSet::activate(std::vector<unsigned char> objects) {
     active_ = blocks_with(active_objects_);
 }
 
-bool BlockSet::all_active() const { return std::count(active_objects_.begin(), active_objects_.end(), 0) == 0; }
-
 std::vector<unsigned char> BlockSet::blocks_with(const std::vector<unsigned char> &objects) const {
     std::vector<unsigned char> blocks(count(), 0);
     for (size_t object = 0; object < objects.size(); ++object)

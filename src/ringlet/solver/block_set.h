@@ -31,7 +31,6 @@ public:
     void activate_all() { activate(std::vector<unsigned char>(objects(), 1)); }
     bool is_active(int object) const { return active_objects_[object] != 0; }
     const std::vector<unsigned char> &active_objects() const { return active_objects_; }
-    bool all_active() const;
 
     // The blocks that one of the marked objects is in.
     std::vector<unsigned char> blocks_with(const std::vector<unsigned char> &objects) const;

@@ -1,8 +1,6 @@
 #include "ringlet/solver/newton.h"
 
-#include "ringlet/solver/relative_damping.h"
-#include "ringlet/solver/stall.h"
-#include "ringlet/solver/stopping_rule.h"
+#include "ringlet/solver/newton_rules.h"
 
 #include <algorithm>
 
