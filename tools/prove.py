@@ -17,6 +17,7 @@ PROOFS = {  # commands that fail where a proof does
     "thousand frames": ".venv/bin/python -m pytest --timeout 0 tests/proof/test_thousand_frames.py",
     "fine sphere": ".venv/bin/python -m pytest tests/proof/test_fine_sphere.py",
     "long hair": ".venv/bin/python -m pytest tests/proof/test_long_hair.py",
+    "whole demo": ".venv/bin/python -m pytest tests/proof/test_whole_demo.py",
     "sanitizers": "make sanitize",
     "wheel": "make wheel",
     "ARM64": "make arm",

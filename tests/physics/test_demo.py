@@ -1,24 +1,33 @@
-"""The demo begins with its groom."""
-
-from pathlib import Path
+"""The demo begins with its groom, and its ringlets bounce; tests/proof/test_whole_demo.py has all of them."""
 
 import numpy as np
-from ringlet.api.demo import balanced
+import pytest
+from bouncing import clip, shot_and_groom
 
 import ringlet
-from ringlet import loft, read_shot, simulate, write_loft
 
-EXAMPLE = Path(__file__).parents[2] / "examples" / "child"
-LOCKS = 40
+HOP = (34, 46)  # frames
 
 
-def test_the_hair_of_the_demo_hangs_as_groomed_when_the_clip_begins(tmp_path):
-    """Within 2 mm, before any cloth comes to it; the groom as its own rest shape sags by centimetres."""
-    recipe = ringlet.read_recipe(EXAMPLE / "ribbon.recipe.toml")
-    few = recipe.model_copy(update={"locks": recipe.locks.model_copy(update={"count": LOCKS})})
-    groom = ringlet.build_groom(few)
-    shot = balanced(read_shot(EXAMPLE / "ribbon.shot.toml"), tmp_path / "ribbon.rest.usdc")
-    shot = shot.model_copy(update={"cloth": []})
-    write_loft(loft(shot, groom), shot, shot.rest.file)
-    moved = simulate(shot, groom, frames=(shot.frames[0], 1)).points[-1] - groom.locks.points
-    assert np.linalg.norm(moved, axis=1).max() < 2e-3
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    return shot_and_groom(tmp_path_factory.mktemp("demo"), 30)
+
+
+def test_the_hair_of_the_demo_hangs_as_groomed_when_the_clip_begins(made):
+    """Within 0.1 mm after half a second; the groom as its own rest shape sags by centimetres."""
+    shot, groom = made
+    shot = shot.model_copy(update={"preroll": 12})
+    moved = ringlet.simulate(shot, groom, frames=(1, 1)).points[-1] - groom.locks.points
+    assert np.linalg.norm(moved, axis=1).max() < 1e-4
+
+
+def test_ringlets_open_and_close_in_the_hop_and_contact_makes_no_whips(made, tmp_path):
+    shot, groom = made
+    shot = shot.model_copy(update={"frames": HOP})
+    alone = shot.model_copy(update={"contact": shot.contact.model_copy(update={"on": False})})
+    bouncing, free = clip(tmp_path, shot, groom), clip(tmp_path, alone, groom)
+    opens, closes = (bouncing.words[name].found for name in ("opens", "closes"))
+    assert np.median(opens) > 0.08 and np.percentile(opens, 90) > 0.15
+    assert np.median(closes) < -0.08 and np.percentile(closes, 10) < -0.15
+    assert bouncing.whips < free.whips

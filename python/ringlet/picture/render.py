@@ -35,7 +35,7 @@ THINNEST = 1e-3
 
 # Samples per pixel of one pass: enough to stratify a pixel and the lights, few enough for several passes to compare.
 # A time limit makes passes smaller, since denoising needs three of them.
-MAX_PASS_SAMPLES, MAX_TIMED_PASS_SAMPLES, MIN_PASSES = 8, 4, 4
+MAX_PASS_SAMPLES, MAX_TIMED_PASS_SAMPLES, MIN_PASSES = 8, 2, 4
 
 # Most pixels along a side of the first picture of one that grows.
 COARSE = 240
