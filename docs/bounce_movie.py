@@ -1,8 +1,7 @@
-"""Makes the movies of docs/motion.md: the demo's clip, and heads in it that differ by their words of motion.
+"""Makes movies of the demo's clip, also side by side at several values of bounce.
 
     python docs/bounce_movie.py demo       docs/images/bounce.webp
     python docs/bounce_movie.py bounce     docs/images/bounces.webp: the demo's ringlets at three values of bounce
-    python docs/bounce_movie.py presets    docs/images/presets.webp: a head for each preset of motion
 
 A head is rendered at low quality with a part of its hairs, each wider.
 """
@@ -22,56 +21,34 @@ from ringlet.shot import Shot
 import ringlet
 
 EXAMPLES, IMAGES = (Path(__file__).parents[1] / name for name in ("examples", "docs/images"))
-SIZE = (300, 360)  # of a panel [pixels]
-SAMPLES, SHARE = 4, 0.1  # light paths per pixel, and the part of the hairs
+SIZE = (240, 290)  # of a panel [pixels]
+SAMPLES, SHARE = 3, 0.06  # light paths per pixel, and the part of the hairs
 LINE = 26  # of the title [pixels]
 
 
 @dataclass(frozen=True)
 class Panel:
-    """A head in the clip: its recipe, ``[motion]``, and what else of the shot differs from the demo's."""
+    """The demo's ringlets with other words of motion."""
 
     title: str
-    recipe: str
     motion: dict[str, Any]
-    rest: str = "equilibrium"
 
 
 def bounce(value: float) -> Panel:
     """The demo's ringlets at a bounce [Hz]."""
-    return Panel(f"bounce {value:g} Hz", "child/ringlets", {"bounce": value, "settle": 0.8})
-
-
-def preset(name: str, recipe: str, rest: str = "equilibrium") -> Panel:
-    """A head that moves as a preset says."""
-    return Panel(name, recipe, {"preset": name}, rest)
+    return Panel(f"bounce {value:g} Hz", {"bounce": value, "settle": 0.8})
 
 
 MOVIES = {
     "demo": ("bounce.webp", 1, [bounce(5.5)]),
     "bounce": ("bounces.webp", 3, [bounce(2.0), bounce(3.5), bounce(7.0)]),
-    "presets": (
-        "presets.webp",
-        4,
-        [
-            preset("tight_springs", "types/3C"),
-            preset("loose_ringlets", "types/3B"),
-            preset("heavy_wet", "types/3A", "none"),
-            preset("light_frizz", "types/4A"),
-            preset("stiff_braids", "looks/box_braids"),
-            preset("locs", "looks/locs"),
-            preset("afro", "looks/afro"),
-        ],
-    ),
 }
 
 
 def shot_of(panel: Panel, folder: Path) -> Shot:
-    """The demo's shot with the panel's groom, words and rest shape."""
+    """The demo's shot with the panel's words and a rest shape for them."""
     shot = ringlet.read_shot(EXAMPLES / "child/ringlets.shot.toml")
-    values = {"motion": type(shot.motion)(**panel.motion), "groom": EXAMPLES / f"{panel.recipe}.recipe.toml"}
-    rest = shot.rest.model_copy(update={"mode": panel.rest})
-    return with_rest_shape(shot.model_copy(update={**values, "rest": rest}), folder / "rest.usdc")
+    return with_rest_shape(shot.model_copy(update={"motion": type(shot.motion)(**panel.motion)}), folder / "rest.usdc")
 
 
 def frames_of(panel: Panel, folder: Path) -> list[Path]:
@@ -80,8 +57,7 @@ def frames_of(panel: Panel, folder: Path) -> list[Path]:
     groom = ringlet.build_groom(ringlet.read_recipe(shot.groom))
     groom_file, cache_file, hair_file = (folder / f"{name}.usdc" for name in ("groom", "cache", "hair"))
     ringlet.write_groom(groom, groom_file)
-    if panel.rest != "none":
-        ringlet.write_loft(ringlet.loft(shot, groom), shot, shot.rest.file)
+    ringlet.write_loft(ringlet.loft(shot, groom), shot, shot.rest.file)
     ringlet.write_simulation(shot, groom, groom_file, cache_file, checkpoints=folder / "checkpoints")
     words = ringlet.motion_words(shot, groom, cache=cache_file)
     print(panel.title, *(" | ".join(row) for row in ringlet.motion_table(words)[1]), sep="\n  ", flush=True)
