@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -29,12 +30,12 @@ def start(
     shot: str,
     recipe: str | None = None,
     locks: int | None = None,
-    balanced: Path | None = None,
+    balanced: bool = False,
     collide: bool = True,
 ):
     """Starts a shot of the example by its name, optionally with another recipe or number of locks.
 
-    balanced: file for rest shapes in equilibrium; None: the shot's own rest shapes
+    balanced: with a rest shape in equilibrium, whatever the shot has
     collide: whether the groom keeps its locks out of skin and clothes
     """
     settings = read_shot(EXAMPLE / f"{shot}.shot.toml")
@@ -42,31 +43,42 @@ def start(
     count = made.locks.count if locks is None else locks
     made = made.model_copy(update={"locks": made.locks.model_copy(update={"count": count})})
     groom = build_groom(made if collide else without_muted(made, frozenset({"collide"})))
-    if balanced is not None:
-        rest = settings.rest.model_copy(update={"mode": "equilibrium", "file": balanced})
+    mode = "equilibrium" if balanced else settings.rest.mode
+    with tempfile.TemporaryDirectory() as aside:
+        rest = settings.rest.model_copy(update={"mode": mode, "file": Path(aside) / "rest.usdc"})
         settings = settings.model_copy(update={"rest": rest})
-        write_loft(loft(settings, groom), settings, balanced)
-    return start_motion(settings, groom)
+        if mode != "none":
+            write_loft(loft(settings, groom), settings, rest.file)
+        return start_motion(settings, groom)
 
 
 def judged(motion, frames: int | None = None, every: int = 1) -> Iterator[Judged]:
-    """Simulates a shot, repeating its clip up to ``frames``, and judges all moves of every ``every``-th frame.
+    """Simulates a shot, repeating its clip up to ``frames``, and judges the moves of every ``every``-th frame.
 
     A vertex that starts inside a body may leave through its surface; its tests against bodies begin one frame later.
     """
     judge, (first, last) = Judge(motion.scene), motion.shot.frames
     penetrating = motion.scene.memory["penetrating_vertices"]
+    found, step = [], motion.scene.step
+
+    def judged_step(*args, **settings):
+        start = motion.scene.positions.copy()
+        report = step(*args, **settings)
+        if is_judged:
+            found.append(judge.crossings_of_step(start, motion.scene.path))
+        return report
+
+    motion.scene.step = judged_step
     for k in range(last - first if frames is None else frames):
         motion.scene.record(is_judged := k % every == 0)
         begin = first + k % (last - first)
         before, penetrating = penetrating, motion.scene.memory["penetrating_vertices"]
         assert np.isin(penetrating, before).all(), f"frame {k}: a vertex entered a body"
         judge.exclude(penetrating)
-        start = motion.scene.positions.copy()
+        found.clear()
         statistics = motion.advance(begin, begin + 1)
         assert np.isfinite(motion.scene.positions).all(), f"frame {k}: a position is not finite"
-        crossings = judge.crossings_of_step(start, motion.scene.path) if is_judged else None
-        yield Judged(crossings, statistics, strained(motion))
+        yield Judged(sum(found) if is_judged else None, statistics, strained(motion))
 
 
 def strained(motion) -> dict:
