@@ -1,6 +1,7 @@
-"""Makes the judges and scenes of tools/proof importable in the proofs."""
+"""Makes the judges and scenes of tools/proof, and those of the physics tests, importable in the proofs."""
 
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parents[2] / "tools/proof"))
+ROOT = Path(__file__).parents[2]
+sys.path[:0] = [str(ROOT / "tests/physics"), str(ROOT / "tools/proof")]
