@@ -2,9 +2,8 @@
 #pragma once
 
 #include "random.h"
-#include "ringlet/ccd/impact_zones.h"
+#include "ringlet/ccd/advected_move.h"
 #include "ringlet/ccd/limit_move.h"
-#include "ringlet/ccd/local_truncation.h"
 
 namespace ringlet {
 
@@ -12,7 +11,6 @@ namespace ringlet {
 struct Crowd {
     CollisionMesh mesh;
     std::vector<Vec3> start, end;
-    std::vector<int> offsets{0};
     std::vector<double> mass;
 
     Crowd(int strands, double size, double motion, unsigned seed, int vertices = 3) {
@@ -31,7 +29,7 @@ struct Crowd {
                 mass.push_back(random(0.5, 2.0));
                 if (k > 0) mesh.edges.push_back({v - 1, v});
             }
-            offsets.push_back(int(start.size()));
+            mesh.objects.push_back({int(start.size()) - vertices, int(start.size()), true});
         }
         mesh.rest = start;
     }
@@ -47,10 +45,10 @@ struct Crowd {
         }
     };
 
-    CcdReport limit(std::vector<Vec3> &limited, StrandLimit strands = StrandLimit::near_impacts, double max_path = 0.0) const {
+    CcdReport limit(std::vector<Vec3> &limited, Yield yield = Yield::near_impacts, double max_path = 0.0) const {
         Found found(mesh, {start, end}, max_path);
         PlannedMove move{end, {}};
-        const CcdReport report = limit_move({offsets, start, strands}, found.pairs, move);
+        const CcdReport report = limit_move(found.pairs, start, move, yield);
         limited = move.to;
         return report;
     }
@@ -65,10 +63,10 @@ struct Crowd {
     }
 
     // Limits a move; then every third strand is shortened further, and the rest of the move is limited again.
-    CcdReport limit_and_shorten(std::vector<Vec3> &limited, StrandLimit strands) const {
+    CcdReport limit_and_shorten(std::vector<Vec3> &limited, Yield yield) const {
         Found found(mesh, {start, end}, 0.1);
         PlannedMove move{end, {}};
-        limit_move({offsets, start, strands}, found.pairs, move);
+        limit_move(found.pairs, start, move, yield);
         std::vector<unsigned char> changed(start.size(), 0);
         for (size_t v = 0; v < start.size(); ++v)
             if (mesh.object[v] % 3 == 0) {
@@ -76,9 +74,21 @@ struct Crowd {
                 move.to[v] = start[v] + 0.3 * (move.to[v] - start[v]);
             }
         found.pairs.update({start, move.to}, changed);
-        const CcdReport report = limit_move({offsets, start, StrandLimit::whole}, found.pairs, move);
+        const CcdReport report = limit_move(found.pairs, start, move, Yield::as_a_whole);
         limited = move.to;
         return report;
+    }
+
+    // The largest distance of a vertex from where one fraction of its strand's move leads it [m].
+    double change_of_shape(const std::vector<Vec3> &to) const {
+        double most = 0.0;
+        for (const auto &[first, last, whole] : mesh.objects) {
+            double made = 0.0, wanted = 0.0;
+            for (int v = first; v < last; ++v) made += (to[v] - start[v]).norm(), wanted += (end[v] - start[v]).norm();
+            for (int v = first; v < last; ++v)
+                most = std::max(most, (to[v] - start[v] - made / wanted * (end[v] - start[v])).norm());
+        }
+        return most;
     }
 
     // Whether any pair has an impact, asked of pairs that are found for this move alone.

@@ -100,10 +100,10 @@ struct SpringScene {
     std::unique_ptr<LinearSystem> system;
     std::unique_ptr<Configuration> configuration;
     std::unique_ptr<ContactStiffness> stiffness;
-    std::vector<int> no_strands{0};
 
     void add_masses(std::vector<Vec3> at, double mass, double spring) {
         const int object = table.objects++, first = int(positions.size());
+        table.mesh.objects.push_back({first, first + int(at.size())});
         for (size_t i = 0; i < at.size(); ++i) {
             add_vertex(at[i], object, true, mass);
             table.mesh.points.push_back(first + int(i));
@@ -115,6 +115,7 @@ struct SpringScene {
 
     void add_triangle(const Vec3 &a, const Vec3 &b, const Vec3 &c) { // after all masses
         const int first = int(positions.size());
+        table.mesh.objects.push_back({first, first + 3});
         for (const Vec3 &at : {a, b, c}) add_vertex(at, table.objects, false, 0.0);
         table.mesh.triangles.push_back({first, first + 1, first + 2});
     }
@@ -128,7 +129,7 @@ struct SpringScene {
         blocks = std::make_unique<BlockSet>(all, table);
         objective = std::make_unique<Objective>(*blocks, table);
         system = std::make_unique<LinearSystem>(*objective);
-        configuration = std::make_unique<Configuration>(table, no_strands, positions, radius);
+        configuration = std::make_unique<Configuration>(table, positions, radius);
         stiffness = std::make_unique<ContactStiffness>(table.count());
     }
 

@@ -28,7 +28,7 @@ BOOST_AUTO_TEST_CASE(a_limited_move_ends_above_the_surface_and_leaves_others_alo
     PlannedMove move{scene.positions, {}};
     for (const int v : {0, 1}) move.to[v].z() = -0.05;
     SceneReport report{};
-    scene.configuration->limit(move, StrandLimit::whole, Candidates::Serve::later_moves, report);
+    scene.configuration->limit(move, Yield::as_a_whole, Candidates::Serve::later_moves, report);
     BOOST_TEST(move.to[0].z() > 0.0);
     BOOST_TEST(move.to[0].z() < 0.01);
     BOOST_TEST(move.to[1].z() == -0.05);
@@ -47,7 +47,7 @@ BOOST_AUTO_TEST_CASE(recorded_positions_begin_with_the_frame_of_the_step_and_fol
     PlannedMove move{begin, {}};
     move.to[1].x() += 0.1;
     SceneReport report{};
-    scene.configuration->limit(move, StrandLimit::whole, Candidates::Serve::later_moves, report);
+    scene.configuration->limit(move, Yield::as_a_whole, Candidates::Serve::later_moves, report);
     scene.configuration->commit(move.to);
     BOOST_REQUIRE(scene.configuration->recorded().size() == 2u);
     BOOST_TEST((scene.configuration->recorded()[0] == begin));
@@ -65,7 +65,7 @@ BOOST_AUTO_TEST_CASE(a_limited_path_leads_where_its_move_ends) {
     const std::vector<unsigned char> none(2, 0);
     SceneReport report{};
     const auto [move, moves] = limit_path(*scene.objective, *scene.configuration, x,
-                                          {Candidates::Serve::later_moves, StrandLimit::whole, none}, path, report);
+                                          {Candidates::Serve::later_moves, Yield::as_a_whole, none}, path, report);
     BOOST_TEST(move.to[0].z() > 0.0);
     BOOST_TEST((move.to[1] - Vec3(1.01, 0.0, -0.04)).norm() < 1e-15);
     BOOST_TEST(path.bend[3] == 0.01);

@@ -113,7 +113,7 @@ BOOST_AUTO_TEST_CASE(edges_that_touch_at_prescribed_ends_are_no_stiffer_than_the
     constexpr double prescribed = std::numeric_limits<double>::infinity();
     CollisionMesh mesh;
     mesh.edges = {{0, 1}, {2, 3}};
-    mesh.strand_edges = 2;
+    mesh.curve_edges = 2;
     mesh.radius.assign(4, 1e-3);
     mesh.moves = {0, 1, 0, 1};
     mesh.object = {0, 0, 1, 1};
@@ -138,9 +138,9 @@ BOOST_AUTO_TEST_CASE(a_pair_is_soft_between_strands_alone) {
     CollisionMesh mesh; // a strand of two vertices; the others are of a second strand, or of a body
     const Stencil middles{{0, 1, 2, 3}, {0.5, 0.5, -0.5, -0.5}, 2};
     const ContactMaterial material{std::vector<double>(4, 2.0), std::vector<double>(4, 5.0), {}, {}};
-    mesh.along_strand.resize(4);
+    mesh.along_curve.resize(4);
     BOOST_TEST(pair_stiffness(mesh, middles, material) == 2.0);
-    mesh.along_strand.resize(2);
+    mesh.along_curve.resize(2);
     BOOST_TEST(pair_stiffness(mesh, middles, material) == 5.0);
 }
 

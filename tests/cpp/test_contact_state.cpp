@@ -16,7 +16,7 @@ BOOST_AUTO_TEST_CASE(a_vertex_is_as_stiff_as_its_load_asks_for) {
     CollisionMesh mesh;
     mesh.moves = {0, 1, 1, 1, 1};
     mesh.object = {0, 0, 0, 0, 0};
-    mesh.along_strand.resize(5);
+    mesh.along_curve.resize(5);
     mesh.radius.assign(5, 0.5 * d_hat);
     ContactStiffness stiffness(5);
     stiffness.begin_step({std::numeric_limits<double>::infinity(), largest, largest, largest, largest}, 0.01);
@@ -69,6 +69,7 @@ BOOST_AUTO_TEST_CASE(a_vertex_inside_a_body_is_exempt_until_it_has_come_out) {
     CollisionMesh mesh;
     mesh.moves = {0, 1};
     mesh.object = {0, 0};
+    mesh.objects = {{0, 2}};
     mesh.radius = {0.01, 0.01};
     mesh.anchor = {-1, -1};
     std::vector<Vec3> positions = {{0.5, 0.5, 0.5}, {0.3, 0.3, 0.3}};
@@ -79,16 +80,15 @@ BOOST_AUTO_TEST_CASE(a_vertex_inside_a_body_is_exempt_until_it_has_come_out) {
     InitialPenetration penetration;
     penetration.add(1, body, mesh);
     BOOST_TEST(mesh.anchor[1] == 1);
-    const std::vector<int> offsets = {0, 2};
     const std::vector<double> stiffness(positions.size(), 7.0);
-    const std::vector<RecoverySpring> springs = penetration.recover(mesh, positions, offsets, stiffness, 1e-3);
+    const std::vector<RecoverySpring> springs = penetration.recover(mesh, positions, stiffness, 1e-3);
     BOOST_REQUIRE(springs.size() == 1u);
     BOOST_TEST(springs[0].normal.dot(Vec3(1, 1, 1).normalized()) > 0.99);
     BOOST_TEST(springs[0].stiffness == 7.0);
     BOOST_TEST(springs[0].depth(positions[1]) == 1e-3, boost::test_tools::tolerance(1e-6)); // no farther than a step's rise
     BOOST_TEST(springs[0].energy(positions[1] + 2e-3 * springs[0].normal) == 0.0);
     positions[1] = {0.4, 0.4, 0.4};
-    BOOST_TEST(penetration.recover(mesh, positions, offsets, stiffness, 1e-3).empty());
+    BOOST_TEST(penetration.recover(mesh, positions, stiffness, 1e-3).empty());
     BOOST_TEST(penetration.count() == 0);
     BOOST_TEST(mesh.anchor[1] == -1);
 }

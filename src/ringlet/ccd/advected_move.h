@@ -1,8 +1,9 @@
-// A move on which kinematic vertices move, corrected round by round until it has no impacts.
+// A move on which kinematic vertices move, corrected round by round until it has no impacts: by impact zones, by truncation.
 #pragma once
 
 #include "ringlet/ccd/impact.h"
 
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -25,7 +26,6 @@ public:
     template <class Correct> void round(const Correct &correct) {
         correct(std::as_const(impacts_));
         find_impacts();
-        ++report_.rounds;
     }
 
     CcdReport report() const;
@@ -38,5 +38,23 @@ private:
     std::vector<Impact> impacts_;
     CcdReport report_;
 };
+
+struct ImpactZonesInput {
+    View<double> mass; // per vertex [kg]
+    // Where a point ends that is advected with a kinematic vertex.
+    std::function<Vec3(int vertex, const Vec3 &point)> advect;
+};
+
+// Impact zones (Provot 1997; Harmon et al. 2008): vertices of impacts share one motion where kinematic bodies leave no choice.
+// Corrects a move by zones for some rounds; impacts may be left. A zone moves as the body that it touches, or by its mean
+// motion. Zones grow while there are impacts at their border. Only relative motion counts.
+void resolve_impact_zones(const ImpactZonesInput &input, AdvectedMove &move);
+
+// Local truncation: vertices that cannot complete a move lag behind; all others complete it. The move has no impacts then. A
+// vertex with an impact makes a fraction of its move, none of it where the pair begins close: a pinch does not tighten.
+// Prescribed vertices too, so that a body is dented where it pinches something. Along curves and over surfaces that spreads so
+// far that no edge is strained by much; objects that are `uniform` keep one fraction of their move. Vertices that make none of
+// it have no impacts, so this ends.
+void truncate_locally(AdvectedMove &move, View<unsigned char> uniform = {});
 
 } // namespace ringlet

@@ -33,8 +33,7 @@ struct CcdReport {
     int candidates = 0;         // pairs
     int impacts = 0;            // of the move before any correction
     int corrected_vertices = 0; // moving vertices with an impact in any round
-    int rounds = 0;
-    double fraction = 1.0; // of a limited move that everything makes; below 1 where no correction was found
+    double fraction = 1.0;      // of a limited move that everything makes; below 1 where no correction was found
 };
 
 } // namespace ringlet

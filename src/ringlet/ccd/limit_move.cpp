@@ -13,31 +13,94 @@ namespace {
 
 constexpr size_t prefetched_pairs = 6; // loaded ahead of the one that is tested
 
-} // namespace
+// One call of limit_move(). The whole objects of an impact are scaled to its time, and one that then hits another with a
+// smaller fraction stops before that. Such chains are resolved within a round, event by event, the smallest fraction first.
+// What was corrected locally is checked in a further round. After some rounds objects with an impact rest, and two that rest
+// have none.
+class MoveLimiter {
+public:
+    MoveLimiter(MoveCandidates &pairs, View<Vec3> start, PlannedMove &move, Yield yield);
 
-MoveLimiter::MoveLimiter(const MoveLimits &limits, const MoveCandidates &pairs, PlannedMove &move)
-    : limits_(limits), pairs_(pairs), mesh_(pairs.candidates().mesh()), move_(move), strands_(int(limits.offsets.size()) - 1),
-      any_cloths_(std::count(mesh_.moves.begin() + limits.offsets.back(), mesh_.moves.end(), 1) > 0),
-      transient_(pairs.transient_pairs()), fraction_(strands_, 1.0), changed_(move.to.size(), 0) {
-    pairs_of_strand_ = {size_t(strands_), [&](const auto &add) {
+    // Resolves impacts among the vertices that the last round changed.
+    void resolve(const std::vector<Impact> &impacts);
+    // Whether impacts may be left: events find those of whole objects with one another, and bodies stay.
+    bool may_leave_impacts() const;
+    const std::vector<unsigned char> &changed() const { return changed_; } // vertices, in the last round
+
+private:
+    // At `fraction` of their motions whole objects a and b have an impact. Valid while their own fractions are unchanged.
+    struct Event {
+        double fraction;
+        int a, b; // −1: not a whole object that moves
+        double fraction_a, fraction_b;
+
+        bool operator>(const Event &other) const {
+            if (fraction != other.fraction) return fraction > other.fraction;
+            return a != other.a ? a > other.a : b > other.b;
+        }
+    };
+
+    std::vector<int> correct_locally(const std::vector<Impact> &impacts);
+    void limit_whole(const std::vector<Impact> &impacts, const std::vector<int> &corrected);
+    void limit_object(int object, double fraction, std::vector<Event> &events);
+    void add_event(const Impact &impact, std::vector<Event> &events) const;
+    std::array<int, 2> whole_objects_of(const Impact &impact) const;
+    int whole_object_of(int v, int w) const;
+    void scale_motion(int v, double factor);
+    void mark_changed(int v) {
+        if (!changed_[v]) changed_list_.push_back(v);
+        changed_[v] = 1;
+    }
+    void prefetch(View<CandidatePair *> pairs, size_t k) const;
+    bool may_have_impact(const CandidatePair &pair) const;
+
+    const MoveCandidates &pairs_;
+    const CollisionMesh &mesh_;
+    View<Vec3> start_;
+    PlannedMove &move_;
+    Yield yield_;
+    int round_ = 0;
+    bool any_local_ = false;                  // whether objects that are not whole move in any pair
+    bool corrected_locally_ = false;          // in any round: what was known of impacts no longer holds
+    std::vector<CandidatePair> transient_;    // as in the first round; later rounds change those of the cache
+    Lists<CandidatePair *> pairs_of_object_;  // of two whole objects that may come together on their paths
+    std::vector<double> fraction_, measured_; // of its motion that each object makes, now and when paths were measured
+    std::vector<unsigned char> changed_;      // per vertex
+    std::vector<int> changed_list_;
+};
+
+MoveLimiter::MoveLimiter(MoveCandidates &pairs, View<Vec3> start, PlannedMove &move, Yield yield)
+    : pairs_(pairs), mesh_(pairs.candidates().mesh()), start_(start), move_(move), yield_(yield),
+      transient_(pairs.transient_pairs()), fraction_(mesh_.objects.size(), 1.0), changed_(move.to.size(), 0) {
+    const auto is_whole = [&](int object) { return mesh_.objects[object].whole; };
+    const auto moves = [&](const auto &primitive) {
+        return !is_whole(mesh_.object[primitive[0]]) && any_of(mesh_.moves, primitive);
+    };
+    pairs_of_object_ = {mesh_.objects.size(), [&](const auto &add) {
                             const auto consider = [&](CandidatePair &pair) {
                                 const auto [a, b] = pair.object;
-                                if (pair.edge_edge && a < strands_ && b < strands_ && a != b) add(a, &pair), add(b, &pair);
+                                if (is_whole(a) && is_whole(b)) {
+                                    if (pair.edge_edge && a != b) add(a, &pair), add(b, &pair);
+                                } else if (!any_local_) {
+                                    any_local_ = with_vertices(mesh_, pair, [&](const auto &primitive, const auto &other) {
+                                        return moves(primitive) || moves(other);
+                                    });
+                                }
                             };
                             for (CandidatePair *pair : pairs.path_candidates()) consider(*pair);
                             for (CandidatePair &pair : transient_) consider(pair);
                         }};
 }
 
-// The strand of an edge; −1: it has none, or does not move.
-int MoveLimiter::strand_of(int v, int w) const {
+// The whole object of an edge; −1: it has none, or does not move.
+int MoveLimiter::whole_object_of(int v, int w) const {
     const bool moves = mesh_.moves[v] || mesh_.moves[w];
-    return moves && mesh_.object[v] < strands_ ? mesh_.object[v] : -1;
+    return moves && mesh_.objects[mesh_.object[v]].whole ? mesh_.object[v] : -1;
 }
 
-std::array<int, 2> MoveLimiter::strands_of(const Impact &impact) const {
+std::array<int, 2> MoveLimiter::whole_objects_of(const Impact &impact) const {
     const auto &[a0, a1, b0, b1] = impact.vertices;
-    return {strand_of(a0, a1), strand_of(b1, b0)};
+    return {whole_object_of(a0, a1), whole_object_of(b1, b0)};
 }
 
 void MoveLimiter::resolve(const std::vector<Impact> &impacts) {
@@ -48,113 +111,112 @@ void MoveLimiter::resolve(const std::vector<Impact> &impacts) {
             if (mesh_.moves[v]) mark_changed(v);
     measured_ = fraction_;
     const std::vector<int> corrected = correct_locally(impacts);
-    limit_strands(impacts, corrected);
+    limit_whole(impacts, corrected);
     corrected_locally_ |= !corrected.empty();
     ++round_;
 }
 
 bool MoveLimiter::may_leave_impacts() const {
-    return round_ > ccd::strand_rounds || corrected_locally_ || any_cloths_ || pairs_.any_escaped();
+    return round_ > ccd::whole_rounds || corrected_locally_ || any_local_ || pairs_.any_escaped();
 }
 
-// Corrects cloths, and strands that could hardly move, near their impacts. Returns these strands.
+// Corrects objects near their impacts that are not whole, and whole ones that could hardly move. Returns the latter.
 std::vector<int> MoveLimiter::correct_locally(const std::vector<Impact> &impacts) {
-    const bool any_strands = limits_.strands == StrandLimit::near_impacts && round_ < ccd::local_strand_rounds;
-    if (!any_strands && !any_cloths_) return {};
-    std::map<int, double> fractions; // strand → fraction of its present motion up to its first impact
+    const bool any_whole = yield_ == Yield::near_impacts && round_ < ccd::local_rounds;
+    if (!any_whole && !any_local_) return {};
+    std::map<int, double> fractions; // whole object → fraction of its present motion up to its first impact
     std::vector<Correction> corrections(move_.to.size());
     for (const Impact &impact : impacts) {
-        const auto [a, b] = strands_of(impact);
-        if (a >= 0 && b >= 0 && fraction_[a] != fraction_[b] && round_ < ccd::strand_rounds) continue;
-        const double fraction = round_ < ccd::strand_rounds ? impact.toi : 0.0;
+        const auto [a, b] = whole_objects_of(impact);
+        if (a >= 0 && b >= 0 && fraction_[a] != fraction_[b] && round_ < ccd::whole_rounds) continue;
+        const double fraction = round_ < ccd::whole_rounds ? impact.toi : 0.0;
         for (const int v : impact.vertices) {
             const int object = mesh_.object[v];
             if (!mesh_.moves[v]) continue;
-            if (object < strands_) {
+            if (mesh_.objects[object].whole) {
                 double &least = fractions.try_emplace(object, 1.0).first->second;
                 least = std::min(least, fraction);
             }
             corrections[v].weight = std::max(corrections[v].weight, 1.0 - fraction);
         }
     }
-    const View<int> offsets = limits_.offsets;
     std::vector<int> corrected;
-    for (const auto &[strand, fraction] : fractions)
-        if (any_strands && fraction <= ccd::hardly_moves)
-            corrected.push_back(strand);
+    for (const auto &[object, fraction] : fractions)
+        if (any_whole && fraction <= ccd::hardly_moves)
+            corrected.push_back(object);
         else
-            std::fill(corrections.begin() + offsets[strand], corrections.begin() + offsets[strand + 1], Correction{});
-    const double max_strain = round_ < ccd::local_cloth_rounds ? ccd::max_strain : 0.0;
-    spread_correction(pairs_.candidates(), limits_.start, move_.to, max_strain, corrections);
+            std::fill(corrections.begin() + mesh_.objects[object].first, corrections.begin() + mesh_.objects[object].end,
+                      Correction{});
+    const double max_strain = round_ < ccd::spread_rounds ? ccd::max_strain : 0.0;
+    spread_correction(pairs_.candidates(), start_, move_.to, max_strain, corrections);
     for (int v = 0; v < int(corrections.size()); ++v)
         if (corrections[v].weight > 0.0) scale_motion(v, 1.0 - corrections[v].weight);
     return corrected;
 }
 
-void MoveLimiter::limit_strands(const std::vector<Impact> &impacts, const std::vector<int> &corrected) {
+void MoveLimiter::limit_whole(const std::vector<Impact> &impacts, const std::vector<int> &corrected) {
     std::vector<Event> events; // a heap
     for (const Impact &impact : impacts) add_event(impact, events);
-    const auto is_corrected = [&](int strand) { return std::binary_search(corrected.begin(), corrected.end(), strand); };
+    const auto is_corrected = [&](int object) { return std::binary_search(corrected.begin(), corrected.end(), object); };
     while (!events.empty()) {
         std::pop_heap(events.begin(), events.end(), std::greater<>());
         const Event e = events.back();
         events.pop_back();
         if ((e.a >= 0 && fraction_[e.a] != e.fraction_a) || (e.b >= 0 && fraction_[e.b] != e.fraction_b))
             continue; // superseded
-        for (const int strand : {e.a, e.b})
-            if (strand >= 0 && !is_corrected(strand)) limit_strand(strand, e.fraction, events);
+        for (const int object : {e.a, e.b})
+            if (object >= 0 && !is_corrected(object)) limit_object(object, e.fraction, events);
     }
 }
 
-// Pairs of a strand lead all over memory: those to come are loaded while one is tested.
+// Pairs of an object lead all over memory: those to come are loaded while one is tested.
 void MoveLimiter::prefetch(View<CandidatePair *> pairs, size_t k) const {
     if (k + 2 * prefetched_pairs < pairs.size()) __builtin_prefetch(pairs[k + 2 * prefetched_pairs]);
     if (k + prefetched_pairs >= pairs.size()) return;
     for (const int edge : pairs[k + prefetched_pairs]->primitive) {
         const int v = mesh_.edges[edge][0]; // the other vertex is next to it
-        __builtin_prefetch(&limits_.start[v]);
+        __builtin_prefetch(&start_[v]);
         __builtin_prefetch(&move_.to[v]);
     }
 }
 
 // Adds the events of the impacts that this causes.
-void MoveLimiter::limit_strand(int strand, double fraction, std::vector<Event> &events) {
-    if (fraction >= fraction_[strand]) return;
-    const View<int> offsets = limits_.offsets;
-    const double factor = fraction / fraction_[strand];
-    for (int v = offsets[strand]; v < offsets[strand + 1]; ++v)
+void MoveLimiter::limit_object(int object, double fraction, std::vector<Event> &events) {
+    if (fraction >= fraction_[object]) return;
+    const double factor = fraction / fraction_[object];
+    for (int v = mesh_.objects[object].first; v < mesh_.objects[object].end; ++v)
         if (mesh_.moves[v]) scale_motion(v, factor);
-    fraction_[strand] = fraction;
-    const View<CandidatePair *> pairs = pairs_of_strand_.of(strand);
+    fraction_[object] = fraction;
+    const View<CandidatePair *> pairs = pairs_of_object_.of(object);
     for (size_t k = 0; k < pairs.size(); ++k) {
         prefetch(pairs, k);
         CandidatePair &pair = *pairs[k];
         if (fraction_[pair.object[0]] == fraction_[pair.object[1]]) continue; // its impact is known from before
         if (!may_have_impact(pair)) continue;
         const auto &a = mesh_.edges[pair.primitive[0]], &b = mesh_.edges[pair.primitive[1]];
-        if (strand_of(a[0], a[1]) < 0 || strand_of(b[0], b[1]) < 0) continue;
-        const double toi = time_of_impact(mesh_, pair, limits_.start, move_.to);
+        if (whole_object_of(a[0], a[1]) < 0 || whole_object_of(b[0], b[1]) < 0) continue;
+        const double toi = time_of_impact(mesh_, pair, start_, move_.to);
         if (toi <= 1.0) add_event({{a[0], a[1], b[0], b[1]}, toi}, events);
     }
 }
 
-// Whether the paths that are left to two strands are longer than a lower bound on their gap. Many are not, and no vertex is
+// Whether the paths that are left to two objects are longer than a lower bound on their gap. Many are not, and no vertex is
 // needed.
 bool MoveLimiter::may_have_impact(const CandidatePair &pair) const {
     const auto [length_a, length_b] = pairs_.path_lengths(pair);
     const auto [a, b] = pair.object;
     const double approach = fraction_[a] / measured_[a] * length_a + fraction_[b] / measured_[b] * length_b;
-    return !(pair.min_gap - ccd::separation_of_d_hat * pair.d_hat > approach); // a strand that rests: not a number
+    return !(pair.min_gap - ccd::separation_of_d_hat * pair.d_hat > approach); // an object that rests: not a number
 }
 
-// Of two strands with different fractions the one that goes farther stops just before it meets the other, and goes as far as
+// Of two objects with different fractions the one that goes farther stops just before it meets the other, and goes as far as
 // that one at least. With one fraction for both, the pair with the least room would stop all hair in contact with it.
 void MoveLimiter::add_event(const Impact &impact, std::vector<Event> &events) const {
-    const auto [a, b] = strands_of(impact);
+    const auto [a, b] = whole_objects_of(impact);
     if (a < 0 && b < 0) return;
     const double fraction_a = a >= 0 ? fraction_[a] : 1.0, fraction_b = b >= 0 ? fraction_[b] : 1.0;
     double fraction = 0.0;
-    if (round_ < ccd::strand_rounds) {
+    if (round_ < ccd::whole_rounds) {
         const bool differ = a >= 0 && b >= 0 && fraction_a != fraction_b;
         const auto [least, most] = std::minmax(fraction_a, fraction_b);
         fraction =
@@ -165,34 +227,35 @@ void MoveLimiter::add_event(const Impact &impact, std::vector<Event> &events) co
 }
 
 void MoveLimiter::scale_motion(int v, double factor) {
-    const Vec3 &start = limits_.start[v];
+    const Vec3 &start = start_[v];
     move_.to[v] = start + factor * (move_.to[v] - start);
     if (!move_.apex.empty()) move_.apex[v] = start + factor * (move_.apex[v] - start);
     mark_changed(v);
 }
 
-CcdReport limit_move(const MoveLimits &limits, MoveCandidates &pairs, PlannedMove &move) {
+} // namespace
+
+CcdReport limit_move(MoveCandidates &pairs, View<Vec3> start, PlannedMove &move, Yield yield) {
     const CollisionMesh &mesh = pairs.candidates().mesh();
-    const int max_rounds = (mesh.object.empty() ? 0 : mesh.object.back() + 1) + ccd::spare_rounds;
-    const auto path = [&] { return Move{limits.start, move.to, move.apex}; };
+    const int max_rounds = int(mesh.objects.size()) + ccd::spare_rounds;
+    const auto path = [&] { return Move{start, move.to, move.apex}; };
     CcdReport report;
     std::vector<unsigned char> corrected(move.to.size(), 0);
     std::optional<MoveLimiter> limiter;
-    for (;; ++report.rounds) {
-        const std::vector<Impact> impacts = find_impacts(mesh, pairs.impact_candidates(), limits.start, move.to);
-        if (report.rounds == 0) report.candidates = pairs.size(), report.impacts = int(impacts.size());
+    for (int round = 0;; ++round) {
+        const std::vector<Impact> impacts = find_impacts(mesh, pairs.impact_candidates(), start, move.to);
+        if (round == 0) report.candidates = pairs.size(), report.impacts = int(impacts.size());
         if (impacts.empty()) break;
         mark_vertices(mesh, impacts, corrected);
-        if (report.rounds >= max_rounds) {
-            report.fraction = truncate_before_first(impacts, limits.start, move.to);
+        if (round >= max_rounds) {
+            report.fraction = truncate_before_first(impacts, start, move.to);
             pairs.shorten(path(), std::vector<unsigned char>(move.to.size(), 1));
             break;
         }
-        if (!limiter) limiter.emplace(limits, pairs, move);
+        if (!limiter) limiter.emplace(pairs, start, move, yield);
         limiter->resolve(impacts);
         if (!limiter->may_leave_impacts()) {
             pairs.shorten(path(), limiter->changed());
-            ++report.rounds;
             break;
         }
         pairs.update(path(), limiter->changed());

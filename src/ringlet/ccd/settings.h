@@ -25,12 +25,12 @@ inline constexpr double max_strain = 0.05;         // that spreading a correctio
 inline constexpr double before_first_impact = 0.9; // of the first time of impact, where a whole move is truncated
 
 // limit_move
-inline constexpr double before_impact = 0.98; // of the time at which a strand meets one that goes less far
-inline constexpr int strand_rounds = 8;       // then strands with impacts rest
-inline constexpr int local_strand_rounds = 2; // in which strands that could hardly move are corrected locally
-inline constexpr int local_cloth_rounds = 16; // in which corrections of cloth are spread; then whole cloths rest
+inline constexpr double before_impact = 0.98; // of the time at which an object meets one that goes less far
+inline constexpr int whole_rounds = 8;        // then whole objects with impacts rest
+inline constexpr int local_rounds = 2;        // in which whole objects that could hardly move are corrected locally
+inline constexpr int spread_rounds = 16;      // in which local corrections are spread; then all of an object takes them
 inline constexpr int spare_rounds = 16;       // beyond one for each object
-inline constexpr double hardly_moves = 0.2;   // a strand that keeps no more of its motion is corrected locally
+inline constexpr double hardly_moves = 0.2;   // a whole object that keeps no more of its motion is corrected locally
 
 // resolve_impact_zones
 inline constexpr int zone_rounds = 6;
@@ -38,8 +38,8 @@ inline constexpr int own_motion_rounds = 3; // in which zones keep their own mot
 
 // truncate_locally
 inline constexpr int partial_rounds = 4; // in which vertices go up to 0.9 of their impacts; then they stay
-inline constexpr int vertex_rounds = 24; // then whole strands and cloths stay
-inline constexpr int object_rounds = 32; // then whole bodies stay
+inline constexpr int vertex_rounds = 24; // then whole objects stay
+inline constexpr int object_rounds = 32; // then bodies stay
 
 // Least distance [m] that a pair keeps on a move which it begins at a distance of `gap`.
 inline double min_separation(double d_hat, double gap) {

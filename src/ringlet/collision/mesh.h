@@ -1,4 +1,4 @@
-// The collision mesh: strands, cloths and bodies in one list of vertices, with the distance at which two primitives activate.
+// The collision mesh: curves and surfaces in one list of vertices, with the distance at which two primitives activate.
 #pragma once
 
 #include "ringlet/collision/settings.h"
@@ -24,26 +24,33 @@ template <class Pair> bool before(const Pair &a, const Pair &b) {
     return a.edge_edge != b.edge_edge ? a.edge_edge : a.primitive < b.primitive;
 }
 
+// One curve or surface: its vertices, and how it yields to an impact.
+struct CollisionObject {
+    int first, end;
+    bool whole = false; // its move is scaled as a whole, so that it keeps its shape; otherwise it is corrected near the impact
+};
+
 struct CollisionMesh {
-    std::vector<std::array<int, 2>> edges;     // of strands, cloths and bodies
-    int strand_edges = 0;                      // the first edges are those of strands
-    std::vector<std::array<int, 3>> triangles; // of cloths and bodies
-    std::vector<int> points;                   // the vertices that are tested against triangles
+    std::vector<std::array<int, 2>> edges;
+    int curve_edges = 0; // the first edges are those of curves, which bound no triangle
+    std::vector<std::array<int, 3>> triangles;
+    std::vector<int> points;              // the vertices that are tested against triangles
+    std::vector<CollisionObject> objects; // in the order of their vertices
 
     // Per vertex:
     std::vector<double> radius;       // half the thickness [m]
     std::vector<unsigned char> moves; // 0: kinematic, as bodies and prescribed vertices are; kinematic pairs are ignored
-    std::vector<int> object;          // the strand, cloth or body that it belongs to
+    std::vector<int> object;          // the object that it belongs to
     std::vector<int> anchor;          // the object that it is anchored to, which it may touch; −1: none
     std::vector<Vec3> rest;           // position at rest [m]
-    std::vector<double> yield;        // length of strand between it and what is prescribed [m], 0 on bodies; empty: infinite
+    std::vector<double> yield;        // length of curve between it and what is prescribed [m], 0 on bodies; empty: infinite
 
     std::vector<PrimitivePair> exempt; // pairs that are never tested, in order
 
-    // Per vertex of strands, which come first: activation distances [m] of the edge from it to the next vertex and the edges
+    // Per vertex of curves, which come first: activation distances [m] of the edge from it to the next vertex and the edges
     // that begin two or more vertices later. Cached, since every search asks for them.
     static constexpr int asked_often = 8;
-    std::vector<std::array<double, asked_often>> along_strand;
+    std::vector<std::array<double, asked_often>> along_curve;
 };
 
 // Merges two ordered lists of pairs into `pairs`.
@@ -112,7 +119,7 @@ template <size_t N> double rest_extent(const CollisionMesh &mesh, const std::arr
     return std::sqrt(most);
 }
 
-// How far a primitive yields [m]: the largest length of strand between a vertex of it and what is prescribed.
+// How far a primitive yields [m]: the largest length of curve between a vertex of it and what is prescribed.
 template <size_t N> double yield(const CollisionMesh &mesh, const std::array<int, N> &primitive) {
     if (mesh.yield.empty()) return std::numeric_limits<double>::infinity();
     double most = 0.0;
@@ -121,15 +128,15 @@ template <size_t N> double yield(const CollisionMesh &mesh, const std::array<int
 }
 
 // The activation distance d_hat of two primitives [m]: the sum of their radii. Within one object it is at most nine tenths of
-// their distance at rest, so that neighbours along a strand never repel each other; but at least a hundredth of the radii.
-// Near what is prescribed the same holds for two objects: strands shorter than their activation distance could part only by
+// their distance at rest, so that neighbours along a curve never repel each other; but at least a hundredth of the radii.
+// Near what is prescribed the same holds for two objects: curves shorter than their activation distance could part only by
 // stretch. There it is at most that distance or a quarter of the lengths over which both yield, whichever is larger.
 template <size_t N, size_t M>
 double activation_distance(const CollisionMesh &mesh, const std::array<int, N> &a, const std::array<int, M> &b) {
     if constexpr (N == 2 && M == 2) {
         const size_t first = std::min(a[0], b[0]), further = std::abs(a[0] - b[0]) - 2;
-        if (first < mesh.along_strand.size() && further < mesh.asked_often && mesh.object[a[0]] == mesh.object[b[0]])
-            return mesh.along_strand[first][further];
+        if (first < mesh.along_curve.size() && further < mesh.asked_often && mesh.object[a[0]] == mesh.object[b[0]])
+            return mesh.along_curve[first][further];
     }
     const double radii = mean_radius(mesh, a) + mean_radius(mesh, b);
     double least = collision::least_d_hat_fraction * radii;
@@ -142,14 +149,14 @@ double activation_distance(const CollisionMesh &mesh, const std::array<int, N> &
     return std::clamp(collision::rest_fraction * std::sqrt(closest_points(mesh.rest, a, b).distance2), least, radii);
 }
 
-// Fills `along_strand` for strands whose first vertices, and the end, are `offsets`.
-inline void cache_activation_distances(CollisionMesh &mesh, View<int> offsets) {
-    std::vector<std::array<double, CollisionMesh::asked_often>> cached(offsets.back());
-    for (size_t s = 0; s + 1 < offsets.size(); ++s)
-        for (int v = offsets[s]; v + 3 < offsets[s + 1]; ++v)
-            for (int w = v + 2; w + 1 < offsets[s + 1] && w < v + 2 + CollisionMesh::asked_often; ++w)
+// Fills `along_curve` of a mesh that has its curves alone so far.
+inline void cache_activation_distances(CollisionMesh &mesh) {
+    std::vector<std::array<double, CollisionMesh::asked_often>> cached(mesh.rest.size());
+    for (const auto &[first, end, whole] : mesh.objects)
+        for (int v = first; v + 3 < end; ++v)
+            for (int w = v + 2; w + 1 < end && w < v + 2 + CollisionMesh::asked_often; ++w)
                 cached[v][w - v - 2] = activation_distance(mesh, std::array{v, v + 1}, std::array{w, w + 1});
-    mesh.along_strand = std::move(cached);
+    mesh.along_curve = std::move(cached);
 }
 
 } // namespace ringlet

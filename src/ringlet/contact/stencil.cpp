@@ -14,7 +14,7 @@ Stencil stencil(const CollisionMesh &mesh, const ContactPair &pair, const Closes
 }
 
 double pair_stiffness(const CollisionMesh &mesh, const Stencil &stencil, const ContactMaterial &material) {
-    const bool of_strands = std::max(stencil.vertex[0], stencil.vertex[3]) < int(mesh.along_strand.size());
+    const bool of_strands = std::max(stencil.vertex[0], stencil.vertex[3]) < int(mesh.along_curve.size());
     const std::vector<double> &stiffness = of_strands ? material.stiffness : material.firm_stiffness;
     const auto of_side = [&](int begin, int end) {
         double softest = std::numeric_limits<double>::infinity(), compliance = 0.0;

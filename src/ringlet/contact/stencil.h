@@ -53,7 +53,7 @@ struct ContactPoint {
 // work(ContactPoint) in order.
 template <class Work>
 void for_contact_points(const CollisionMesh &mesh, const ContactPair &pair, View<Vec3> positions, const Work &work) {
-    if (!pair.edge_edge || std::max(pair.primitive[0], pair.primitive[1]) >= mesh.strand_edges)
+    if (!pair.edge_edge || std::max(pair.primitive[0], pair.primitive[1]) >= mesh.curve_edges)
         return work(ContactPoint{pair.closest, 1.0, 0});
     const auto [a0, a1] = mesh.edges[pair.primitive[0]];
     const auto [b0, b1] = mesh.edges[pair.primitive[1]];

@@ -23,7 +23,7 @@ bool ContactStiffness::raise_loads(const ContactSet &contacts) {
 
 void ContactStiffness::set_levels(const CollisionMesh &mesh, ContactMaterial &material) const {
     material.stiffness = material.firm_stiffness = largest_;
-    const int strand_vertices = int(mesh.along_strand.size());
+    const int strand_vertices = int(mesh.along_curve.size());
     for (int v = 0; v < strand_vertices; ++v) {
         if (!mesh.moves[v]) continue;
         double load = load_[v]; // a contact that slides passes on to the next vertex

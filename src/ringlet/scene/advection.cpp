@@ -1,7 +1,6 @@
 #include "ringlet/scene/advection.h"
 
-#include "ringlet/ccd/impact_zones.h"
-#include "ringlet/ccd/local_truncation.h"
+#include "ringlet/ccd/advected_move.h"
 #include "ringlet/math/disjoint_sets.h"
 #include "ringlet/scene/settings.h"
 #include "ringlet/scene/space_map.h"
@@ -29,7 +28,7 @@ RigidMotion motion_of_most(const SceneVertices &vertices, View<Vec3> from, View<
 
 // The ends of all vertices, dynamic ones advected rigidly. A strand goes with its root, or with the body that it is rooted in.
 // A cloth goes with its body, else with the mean motion of its prescribed vertices, else with that of all.
-std::vector<Vec3> advected_rigidly(const PrescribedMotion &motion, View<int> offsets, const Carriers &carriers) {
+std::vector<Vec3> advected_rigidly(const PrescribedMotion &motion, const Carriers &carriers) {
     const SceneVertices &all = motion.vertices;
     std::vector<Vec3> end(motion.target.begin(), motion.target.end());
     const std::vector<int> leaders = motion.rigid_bodies();
@@ -42,7 +41,7 @@ std::vector<Vec3> advected_rigidly(const PrescribedMotion &motion, View<int> off
     };
 #pragma omp parallel for schedule(static)
     for (int s = 0; s < all.strands; ++s) {
-        const int first = offsets[s], last = offsets[s + 1];
+        const auto [first, last, whole] = all.mesh.objects[s];
         const int body = s < int(carriers.of_strands.size()) ? carriers.of_strands[s] : -1;
         const int leader = follows_body(body, first, last) ? leaders[body] : first;
         move(first, last, [&](const Vec3 &point) { return motion.carry(leader, point); });
@@ -181,23 +180,23 @@ std::vector<unsigned char> bodies_that_may_wait(const PrescribedMotion &motion, 
 }
 
 // Objects and bodies of which a part cannot stay behind: pins would draw out their cloth.
-std::vector<unsigned char> whole_objects(const SceneVertices &vertices, const std::vector<unsigned char> &may_wait) {
-    std::vector<unsigned char> whole(vertices.objects, 0);
+std::vector<unsigned char> uniform_objects(const SceneVertices &vertices, const std::vector<unsigned char> &may_wait) {
+    std::vector<unsigned char> uniform(vertices.objects, 0);
     for (int c = 0; c + 1 < int(vertices.cloths.size()); ++c)
-        whole[vertices.strands + c] = !prescribed(vertices, vertices.cloths[c], vertices.cloths[c + 1]).empty();
-    whole.insert(whole.end(), may_wait.begin(), may_wait.end());
-    return whole;
+        uniform[vertices.strands + c] = !prescribed(vertices, vertices.cloths[c], vertices.cloths[c + 1]).empty();
+    uniform.insert(uniform.end(), may_wait.begin(), may_wait.end());
+    return uniform;
 }
 
 } // namespace
 
-std::vector<unsigned char> advect(const PrescribedMotion &motion, View<int> offsets, const Carriers &carriers,
-                                  Configuration &configuration, SceneReport &report) {
+std::vector<unsigned char> advect(const PrescribedMotion &motion, const Carriers &carriers, Configuration &configuration,
+                                  SceneReport &report) {
     const Stopwatch watch(report.time_filter);
     const SceneVertices &vertices = motion.vertices;
     std::vector<unsigned char> may_wait;
     std::vector<Vec3> target(motion.target.begin(), motion.target.end());
-    std::vector<Vec3> end = advected_rigidly(motion, offsets, carriers);
+    std::vector<Vec3> end = advected_rigidly(motion, carriers);
     const RigidMotion frame = motion_of_most(vertices, motion.start, end);
     configuration.begin_step(frame);
     std::vector<Vec3> led = configuration.positions;
@@ -219,9 +218,9 @@ std::vector<unsigned char> advect(const PrescribedMotion &motion, View<int> offs
                 const Vec3 &waits = configuration.positions[v];
                 target[v] = part > scene_settings::least_part ? Vec3(0.5 * (waits + target[v])) : waits;
             }
-        end = advected_rigidly({vertices, motion.start, motion.led, target}, offsets, carriers);
+        end = advected_rigidly({vertices, motion.start, motion.led, target}, carriers);
     }
-    truncate_locally(attempt->move(), whole_objects(vertices, may_wait));
+    truncate_locally(attempt->move(), uniform_objects(vertices, may_wait));
     Configuration::add(attempt->move().report(), report);
     std::vector<unsigned char> astray = attempt->through_space();
     for (int v = 0; v < vertices.dynamic_vertices; ++v)

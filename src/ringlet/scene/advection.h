@@ -23,7 +23,7 @@ struct Carriers {
 //   3. bodies that move affinely and carry nothing make half of their motion, a quarter, …, none, and wait with the rest;
 //   4. what is left is truncated, bodies included.
 // Returns the objects that are not where a rigid advection leads them.
-std::vector<unsigned char> advect(const PrescribedMotion &motion, View<int> offsets, const Carriers &carriers,
-                                  Configuration &configuration, SceneReport &report);
+std::vector<unsigned char> advect(const PrescribedMotion &motion, const Carriers &carriers, Configuration &configuration,
+                                  SceneReport &report);
 
 } // namespace ringlet

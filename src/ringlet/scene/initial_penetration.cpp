@@ -45,8 +45,8 @@ void InitialPenetration::add(int vertex, const Body &body, CollisionMesh &mesh) 
     mesh.anchor[vertex] = body.object;
 }
 
-std::vector<RecoverySpring> InitialPenetration::recover(CollisionMesh &mesh, View<Vec3> positions, View<int> offsets,
-                                                        View<double> stiffness, double length) {
+std::vector<RecoverySpring> InitialPenetration::recover(CollisionMesh &mesh, View<Vec3> positions, View<double> stiffness,
+                                                        double length) {
     if (vertices_.empty()) return {};
     std::vector<std::unique_ptr<Surface>> surfaces(bodies_.size());
     for (size_t b = 0; b < bodies_.size(); ++b)
@@ -65,10 +65,10 @@ std::vector<RecoverySpring> InitialPenetration::recover(CollisionMesh &mesh, Vie
         Vec3 outward = Vec3::Zero();
         const double height = surface.height(positions[v], outward);
         if (height >= scene_settings::recovered_height * touching) {
-            const int strand = mesh.object[v];
+            const CollisionObject &strand = mesh.objects[mesh.object[v]];
             double least = height;
             for (const int next : {v - 1, v + 1})
-                if (next >= offsets[strand] && next < offsets[strand + 1])
+                if (next >= strand.first && next < strand.end)
                     least = std::min(least, surface.least_height(positions[v], positions[next]));
             outside[k] = least >= scene_settings::separate_height * touching;
         }

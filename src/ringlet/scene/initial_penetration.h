@@ -23,9 +23,7 @@ public:
 
     // Ends the exemption of vertices that are outside: they, and the edges to their neighbours, at the contact distance. The
     // others get a spring of their stiffness [N/m] to a height that rises by `length` a step, at most to the contact distance.
-    // Vertices of one strand follow one another; `offsets` are their ranges.
-    std::vector<RecoverySpring> recover(CollisionMesh &mesh, View<Vec3> positions, View<int> offsets, View<double> stiffness,
-                                        double length);
+    std::vector<RecoverySpring> recover(CollisionMesh &mesh, View<Vec3> positions, View<double> stiffness, double length);
 
     // What a step remembers: the vertices with the heights over the surface that they are to have reached [m].
     std::vector<std::pair<int, double>> heights() const;

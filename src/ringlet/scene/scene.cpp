@@ -47,7 +47,7 @@ SceneData::SceneData(const StrandModel &model_, StrandState &state_, const std::
                      const std::vector<BodyModel> &bodies_, const std::vector<int> &rooted_in_, const SceneContact &contact_)
     : model(model_), state(state_), contact(contact_), rooted_in(rooted_in_), pinned_to(pins(cloths_)),
       touched(cloths_.size(), -1), vertices(number_vertices(model_, state_, cloths_, bodies_, rooted_in_, contact_)),
-      configuration(vertices, model_.offsets, all_positions(state_, cloths_, bodies_), contact_.strand_radius),
+      configuration(vertices, all_positions(state_, cloths_, bodies_), contact_.strand_radius),
       strands(make_strand_blocks(model_, state_)), cloths(make_cloth_blocks(cloths_, vertices)),
       blocks(all_blocks(strands, cloths), vertices), objective(blocks, vertices), system(objective),
       stiffness(vertices.count()), newton(vertices, objective, system, configuration, stiffness) {

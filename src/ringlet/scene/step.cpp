@@ -75,8 +75,7 @@ std::vector<unsigned char> advect_to(SceneData &scene, View<Vec3> targets, const
         if (!vertices.mesh.moves[v]) end[v] = targets[v];
     const std::vector<int> bodies = bodies_of_cloths(scene);
     const std::vector<unsigned char> astray =
-        advect({vertices, start, led, end}, View<int>(scene.model.offsets), {scene.rooted_in, bodies, scene.pinned_to, drift},
-               scene.configuration, report);
+        advect({vertices, start, led, end}, {scene.rooted_in, bodies, scene.pinned_to, drift}, scene.configuration, report);
     scene.lagging.clear();
     for (int v = 0; v < vertices.count(); ++v)
         if (!vertices.mesh.moves[v] && scene.configuration.positions[v] != targets[v])
@@ -106,7 +105,7 @@ void move_to_initial_guess(SceneData &scene, const std::vector<unsigned char> &a
             (move.to[v] - now[v]).squaredNorm() < scene_settings::guess_rounding * scene_settings::guess_rounding)
             move.to[v] = now[v];
     const std::vector<Vec3> guess = move.to;
-    scene.configuration.limit(move, StrandLimit::near_impacts, Candidates::Serve::later_moves, report);
+    scene.configuration.limit(move, Yield::near_impacts, Candidates::Serve::later_moves, report);
     refinement.add(ObjectMoves(scene.blocks, now, guess, move.to), tolerance);
     scene.configuration.commit(move.to);
     scene.blocks.scatter(scene.configuration.positions, x);
@@ -145,9 +144,8 @@ SceneReport take_step(SceneData &scene, const SceneInput &input, const SceneStep
     const std::vector<unsigned char> astray = advect_to(scene, input.targets, step.dt * mean_velocity_of_cloths(scene), report);
 
     const int inside = scene.penetration.count();
-    scene.objective.springs =
-        scene.penetration.recover(scene.vertices.mesh, scene.configuration.positions, View<int>(scene.model.offsets),
-                                  scene.stiffness.largest(), scene_settings::recovery_speed * step.dt);
+    scene.objective.springs = scene.penetration.recover(scene.vertices.mesh, scene.configuration.positions,
+                                                        scene.stiffness.largest(), scene_settings::recovery_speed * step.dt);
     if (scene.penetration.count() < inside) scene.configuration.candidates.clear(); // of pairs that were exempt
 
     const std::vector<Vec3> targets = targets_on_arrival(scene, input.targets);

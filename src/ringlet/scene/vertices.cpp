@@ -24,6 +24,7 @@ public:
         int held = 0;
         while (first + held < end && model.held[first + held]) ++held;
         add_yield(model, first, end);
+        all_.mesh.objects.push_back({first, end, true});
         for (int v = first; v < end; ++v) {
             add_vertex(object, radii[v], state.positions[v], !model.held[v], model.mass[v]);
             if (held >= 3) all_.carriers[v] = Triangle(first, first + 1, first + 2);
@@ -34,6 +35,7 @@ public:
 
     void add_cloth(const SceneCloth &cloth, const Object &object) {
         const int base = all_.count();
+        all_.mesh.objects.push_back({base, base + cloth.model->vertex_count()});
         const double radius = 0.5 * cloth.model->thickness;
         all_.mesh.yield.insert(all_.mesh.yield.end(), cloth.model->vertex_count(), std::numeric_limits<double>::infinity());
         for (int i = 0; i < cloth.model->vertex_count(); ++i)
@@ -44,6 +46,7 @@ public:
 
     void add_body(const BodyModel &body, const Object &object, bool meets_triangles) {
         const int base = all_.count();
+        all_.mesh.objects.push_back({base, base + int(body.rest.size())});
         for (const Vec3 &rest : body.rest) {
             const int vertex = add_vertex(object, body.thickness, rest, false, 0.0);
             all_.mesh.yield.push_back(0.0);
@@ -98,7 +101,7 @@ private:
 // A table in which nothing can touch.
 void remove_primitives(CollisionMesh &mesh) {
     mesh.edges.clear(), mesh.triangles.clear(), mesh.points.clear();
-    mesh.strand_edges = 0;
+    mesh.curve_edges = 0;
 }
 
 } // namespace
@@ -118,8 +121,8 @@ SceneVertices number_vertices(const StrandModel &strands, const StrandState &sta
         const int carrier = object_of_body(s < int(rooted_in.size()) ? rooted_in[s] : -1);
         numbering.add_strand(strands, state, s, radii, {s, carrier, contact.strand_material});
     }
-    all.mesh.strand_edges = int(all.mesh.edges.size());
-    cache_activation_distances(all.mesh, View<int>(strands.offsets));
+    all.mesh.curve_edges = int(all.mesh.edges.size());
+    cache_activation_distances(all.mesh);
     for (int c = 0; c < int(cloths.size()); ++c) {
         all.cloths.push_back(all.count());
         numbering.add_cloth(cloths[c], {all.strands + c, object_of_body(cloths[c].pinned_to), cloths[c].material});

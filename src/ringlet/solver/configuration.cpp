@@ -6,12 +6,11 @@
 
 namespace ringlet {
 
-Configuration::Configuration(const VertexTable &table, View<int> strands, std::vector<Vec3> positions_, double strand_radius)
-    : positions(std::move(positions_)), candidates(table.mesh), pairs(candidates), table_(table), strands_(strands),
-      strand_radius_(strand_radius) {}
+Configuration::Configuration(const VertexTable &table, std::vector<Vec3> positions_, double radius)
+    : positions(std::move(positions_)), candidates(table.mesh), pairs(candidates), table_(table), radius_(radius) {}
 
 void Configuration::begin(const Move &move, Candidates::Serve serve) {
-    candidates.enclose(move, {solver_settings::bound_margin * strand_radius_, solver_settings::max_bound_length}, serve);
+    candidates.enclose(move, {solver_settings::bound_margin * radius_, solver_settings::max_bound_length}, serve);
     pairs.begin(move);
 }
 
@@ -24,23 +23,23 @@ std::vector<ContactPair> Configuration::contact_pairs() {
     return pairs.contact_pairs(positions);
 }
 
-void Configuration::limit(PlannedMove &move, StrandLimit strands, Candidates::Serve serve, SceneReport &report) {
+void Configuration::limit(PlannedMove &move, Yield yield, Candidates::Serve serve, SceneReport &report) {
     if (std::equal(move.to.begin(), move.to.end(), positions.begin()) &&
         std::equal(move.apex.begin(), move.apex.end(), positions.begin()))
         return; // it stays
     const Stopwatch watch(report.time_filter);
     begin({positions, move.to, move.apex}, serve);
-    limit_begun(move, strands, report);
+    limit_begun(move, yield, report);
 }
 
-void Configuration::limit_again(PlannedMove &move, StrandLimit strands, View<unsigned char> changed, SceneReport &report) {
+void Configuration::limit_again(PlannedMove &move, Yield yield, View<unsigned char> changed, SceneReport &report) {
     const Stopwatch watch(report.time_filter);
     pairs.update({positions, move.to, move.apex}, changed);
-    limit_begun(move, strands, report);
+    limit_begun(move, yield, report);
 }
 
-void Configuration::limit_begun(PlannedMove &move, StrandLimit strands, SceneReport &report) {
-    add(limit_move({strands_, positions, strands}, pairs, move), report);
+void Configuration::limit_begun(PlannedMove &move, Yield yield, SceneReport &report) {
+    add(limit_move(pairs, positions, move, yield), report);
 }
 
 void Configuration::add(const CcdReport &limited, SceneReport &report) {

@@ -12,8 +12,8 @@ namespace ringlet {
 
 class Configuration {
 public:
-    // `strands` says where each begins among the vertices, and the end.
-    Configuration(const VertexTable &table, View<int> strands, std::vector<Vec3> positions, double strand_radius);
+    // `radius` scales the margin of motion bounds [m].
+    Configuration(const VertexTable &table, std::vector<Vec3> positions, double radius);
 
     std::vector<Vec3> positions;
     Candidates candidates;
@@ -23,9 +23,9 @@ public:
     std::vector<ContactPair> contact_pairs();
 
     // Shortens a move so that no pair comes closer than it may.
-    void limit(PlannedMove &move, StrandLimit strands, Candidates::Serve serve, SceneReport &report);
+    void limit(PlannedMove &move, Yield yield, Candidates::Serve serve, SceneReport &report);
     // The same where some vertices of the last limited move end elsewhere.
-    void limit_again(PlannedMove &move, StrandLimit strands, View<unsigned char> changed, SceneReport &report);
+    void limit_again(PlannedMove &move, Yield yield, View<unsigned char> changed, SceneReport &report);
 
     // Takes the last limited move, or any fraction of it.
     void commit(const std::vector<Vec3> &to);
@@ -42,12 +42,11 @@ public:
 private:
     void begin(const Move &move, Candidates::Serve serve);
     void find_candidates(); // where there are none
-    void limit_begun(PlannedMove &move, StrandLimit strands, SceneReport &report);
+    void limit_begun(PlannedMove &move, Yield yield, SceneReport &report);
     void add_to_record();
 
     const VertexTable &table_;
-    View<int> strands_;
-    double strand_radius_;
+    double radius_;
     bool recording_ = false;
     std::vector<std::vector<Vec3>> recorded_;
 };

@@ -36,9 +36,9 @@ SolverEffort Newton::minimise(View<Vec3> start, const NewtonSettings &settings, 
         const std::vector<double> longest = choose_path(x, stall.cautious(), path);
         // A strand that could hardly move is limited near the pair alone, so that the rest of it follows in the first
         // iteration. In extra ones a single pair could hold it for good. Between these its shape counts.
-        const StrandLimit strands = number > 0 && !extra ? StrandLimit::whole : StrandLimit::near_impacts;
+        const Yield yield = number > 0 && !extra ? Yield::as_a_whole : Yield::near_impacts;
         const auto serve = last ? Candidates::Serve::later_moves : Candidates::Serve::this_move;
-        LimitedPath limited = limit_path(objective_, configuration_, x, {serve, strands, stall.cautious()}, path, report);
+        LimitedPath limited = limit_path(objective_, configuration_, x, {serve, yield, stall.cautious()}, path, report);
         limited.moves.shorten(longest);
         finished = stopping.all_converged() && limited.moves.are_full();
 
@@ -117,7 +117,7 @@ void Newton::accept(PlannedMove move, const LineSearchResult &found, AlignedVect
         for (int v = 0; v < table_.dynamic_vertices; ++v)
             if (found.step[table_.mesh.object[v]] < 1.0) changed[v] = 1, move.to[v] = blocks.position(x, v);
         move.apex.clear();
-        configuration_.limit_again(move, StrandLimit::whole, changed, report);
+        configuration_.limit_again(move, Yield::as_a_whole, changed, report);
     }
     configuration_.commit(move.to);
     blocks.scatter(configuration_.positions, x);

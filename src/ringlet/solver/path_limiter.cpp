@@ -67,7 +67,7 @@ LimitedPath limit_path(const Objective &objective, Configuration &configuration,
     PlannedMove move{{}, now};
     set_end_of_path(blocks, table, now, x, path, blocks.active_objects(), end, wanted, move.apex);
     move.to = wanted;
-    configuration.limit(move, StrandLimit::whole, limits.serve, report);
+    configuration.limit(move, Yield::as_a_whole, limits.serve, report);
 
     std::vector<double> left = fractions_left(blocks, now, wanted, move.to);
     std::vector<unsigned char> straight(table.objects, 0), limited(table.objects, 0), changed(table.count(), 0);
@@ -88,7 +88,7 @@ LimitedPath limit_path(const Objective &objective, Configuration &configuration,
 #pragma omp parallel for schedule(static)
     for (int v = 0; v < table.dynamic_vertices; ++v)
         if (table.mesh.moves[v] && limited[table.mesh.object[v]]) changed[v] = 1, move.to[v] = wanted[v];
-    configuration.limit_again(move, limits.strands, changed, report);
+    configuration.limit_again(move, limits.yield, changed, report);
     ObjectMoves moves(blocks, now, wanted, move.to);
     moves.shorten(left);
     end_where_limited(blocks, table, now, wanted, move.to, path);

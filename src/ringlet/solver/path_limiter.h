@@ -9,7 +9,7 @@ namespace ringlet {
 
 struct PathLimits {
     Candidates::Serve serve;
-    StrandLimit strands;                       // of what has an impact on the shortened path, too
+    Yield yield;                               // of what has an impact on the shortened path, too
     const std::vector<unsigned char> &uniform; // per object: its cluster takes one fraction of the path
 };
 
