@@ -111,12 +111,13 @@ void bind_strand(nb::module_ &module) {
             "__init__",
             [](Strands *self, Array1<int> offsets, Array3<double> rest, Array1<unsigned char> held,
                const StrandMaterial &material, Array1<double> radius, Array1<double> stretch, Array1<double> bend,
-               Array1<double> twist, Array1<double> damping) {
-                const StrandVariation variation{view(radius), view(stretch), view(bend), view(twist), view(damping)};
+               Array1<double> twist, Array1<double> damping, Array1<double> drag) {
+                const StrandVariation variation{view(radius), view(stretch), view(bend),
+                                                view(twist),  view(damping), view(drag)};
                 StrandModel model = make_strand_model(view(offsets), vectors<Vec3>(rest), view(held), material, variation);
                 new (self) Strands(std::move(model), vectors<Vec3>(rest));
             },
-            "offsets"_a, "rest"_a, "held"_a, "material"_a, "radius"_a, "stretch"_a, "bend"_a, "twist"_a, "damping"_a,
+            "offsets"_a, "rest"_a, "held"_a, "material"_a, "radius"_a, "stretch"_a, "bend"_a, "twist"_a, "damping"_a, "drag"_a,
             "offsets: shape (count + 1,) int32; rest: rest shape [m], shape (n, 3); held: 1 where a vertex follows its target, "
             "(n,) uint8; "
             "then factors on the material, each of shape (n,) or empty.")

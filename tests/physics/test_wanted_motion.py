@@ -121,6 +121,8 @@ def test_beads_weigh_at_the_tip():
 def test_air_settles_a_bounce():
     calm, thick = (shown(shot(f"{BDF2}[motion]\nair = {air}\n"), groom("3B")).settle for air in (0, 20))
     assert thick < 0.6 * calm
+    single = "[motion]\nair = { value = 0, lock = { 1 = 20 } }\n"
+    assert shown(shot(BDF2 + single), groom("3B", "3B")).settle == pytest.approx([*calm, *thick], rel=1e-6)
 
 
 @pytest.mark.parametrize(("preset", "kind"), [("tight_springs", "3C"), ("loose_ringlets", "3B"), ("heavy_wet", "3B"),

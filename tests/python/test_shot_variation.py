@@ -103,6 +103,24 @@ def test_a_stiffer_material_sags_less_in_a_simulated_shot():
     assert even.points[0, POINTS - 1, 1] < 2 * stiff.points[0, POINTS - 1, 1] < 0
 
 
+def test_a_limp_lock_hangs_out_in_wind_by_its_air():
+    """The tangent of its angle is drag by weight: twice the factor, twice the tangent."""
+    text = "[strands]\nbend_scale = 1e-4\n[motion]\nair = { value = 2, lock = { 9 = 4 } }\n"
+    strands, wind = make_strands(parse_shot(SHOT + text), groom()), 0.4
+    assert strands.settle(gravity=(0, -9.81, 0), wind=(0, 0, wind), tolerance=1e-8)
+    tips = np.diff(strands.positions.reshape(2, POINTS, 3)[:, -3:-1], axis=1)[:, 0]
+    weight = 1300 * np.pi * 35e-6**2 * 9.81  # by length
+    assert tips[:, 2] / -tips[:, 1] == pytest.approx(2e-5 * wind / weight * np.array([2, 4]), rel=0.01)
+
+
+def test_air_varies_along_a_lock_and_multiplies_its_variation():
+    text = "[variation]\ndrag = 3\n[motion]\nair = { ramp = [[0, 0], [1, 2]] }\n"
+    plain, varied = (make_strands(parse_shot(SHOT + more), groom()).drag[1 : POINTS - 1] for more in ("", text))
+    assert varied / plain == pytest.approx(3 * 2 * np.linspace(0, 1, POINTS)[1:-1])
+    with pytest.raises(UserError, match=r"motion.air is .* on lock 7: strands.drag is"):
+        make_strands(parse_shot(f"{SHOT}[strands]\ndrag = 1\n[motion]\nair = 1e4\n"), groom())
+
+
 @pytest.mark.parametrize(
     ("text", "made", "words"),
     [

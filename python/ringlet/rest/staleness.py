@@ -46,7 +46,6 @@ def dependencies(shot: Shot, obstacles: Sequence[Obstacle] = ()) -> dict[str, An
     """The settings of a shot that a rest shape depends on, and what locks may lie on, as plain values."""
     settings = shot.model_dump(mode="json", include=_SETTINGS)
     made = {**settings, "rest": {**settings["rest"], "mode": rest_mode(shot)}}
-    made["strands"]["drag"] = shot.material.drag
     if shot.motion.given:
         of_hair = [name for name in shot.motion.given if getattr(shot.motion, name).of_hair]
         made["motion"] = {"seed": shot.motion.seed, "substeps": shot.solver.substeps}

@@ -59,7 +59,10 @@ class WantedMotion(Section):
         description="factor on the mass of the locks, which keep their stiffness: wet hair has 1.5 to 2, beads weigh "
         "at the tip",
     )
-    air: float = Field(default=1.0, ge=0.0, le=1e4, description="factor on the air drag of the locks, `strands.drag`")
+    air: Annotated[Mapped, Quantity("", 0.0, 1e4)] = Field(
+        default=Mapped(),
+        description="factor on the air drag of the locks, `strands.drag`: light frizz has 2 to 5",
+    )
     seed: int = Field(default=1, ge=0, le=2**31, description="another seed gives `vary` and `noise` other values")
 
     @model_validator(mode="before")

@@ -14,7 +14,7 @@ PRESETS: dict[str, dict[str, Any]] = {
     "tight_springs": {"bounce": {"value": 6.0, "vary": 0.1}, "settle": 0.5},
     "loose_ringlets": {"bounce": {"value": 3.0, "vary": 0.1}, "settle": 0.9},
     "heavy_wet": {"settle": 0.5, "weight": 2.0},
-    "light_frizz": {"settle": {"value": 0.25, "vary": 0.4}, "weight": 0.7, "air": 4.0},
+    "light_frizz": {"settle": {"value": 0.25, "vary": 0.4}, "weight": 0.7, "air": {"value": 4.0, "vary": 0.4}},
     "stiff_braids": {"swing": {"value": 1.3, "of_hair": True}, "settle": 0.25, "weight": 1.2},
     "locs": {"swing": {"value": 1.6, "of_hair": True}, "settle": 0.2, "weight": 1.3},
     "afro": {"swing": {"value": 0.75, "of_hair": True, "noise": 0.1}, "settle": 0.3},

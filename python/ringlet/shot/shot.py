@@ -120,11 +120,6 @@ class Shot(Section):
         return cloths
 
     @property
-    def material(self) -> Material:
-        """The material of the locks, in the air that they have."""
-        return self.strands.model_copy(update={"drag": self.strands.drag * self.motion.air})
-
-    @property
     def touching(self) -> ShotContact | None:
         """The settings of contact, if it is on. In equilibrium it neither parts nor creeps, unless settings say so."""
         if not (self.contact and self.contact.on):

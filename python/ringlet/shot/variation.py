@@ -16,6 +16,7 @@ VARIATIONS = {
     "bend": "bend_scale",
     "twist": "twist_ratio",
     "damping": "damping",
+    "drag": "drag",
 }
 
 
@@ -41,4 +42,5 @@ class Variation(Section):
     bend: Factor = Field(default=Mapped(), description="factor on `strands.bend_scale`")
     twist: Factor = Field(default=Mapped(), description="factor on `strands.twist_ratio`; the product is at most 1")
     damping: Factor = Field(default=Mapped(), description="factor on `strands.damping`")
+    drag: Factor = Field(default=Mapped(), description="factor on `strands.drag`")
     seed: int = Field(default=1, ge=0, le=2**31, description="another seed gives `vary` and `noise` other values")

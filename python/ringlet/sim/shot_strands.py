@@ -53,7 +53,7 @@ def make_strands(
         of_locks["bend"] = of_locks.get("bend", 1.0) * stiffened
     for name, factor in of_locks.items():
         factors[name] = factors.get(name, 1.0) * np.repeat(factor, locks.counts)
-    return Strands(rest or locks, shot.material, held_vertices(locks, shot.held), factors)
+    return Strands(rest or locks, shot.strands, held_vertices(locks, shot.held), factors)
 
 
 def steps_of(shot: Shot, fps: float) -> Stepping:

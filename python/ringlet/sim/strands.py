@@ -25,7 +25,8 @@ class Strands:
     material:  their material
     held:      the vertices that follow ``targets``: a number of them from each root (three hold position and frame), or
                a mask of shape (n,) that contains the roots
-    variation: factors on the material per vertex, shape (n,) each, by name: radius, stretch, bend, twist, damping
+    variation: factors on the material per vertex, shape (n,) each, by name: radius, stretch, bend, twist, damping,
+               drag
     """
 
     curves: Curves

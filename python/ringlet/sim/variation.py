@@ -42,6 +42,10 @@ def material_factors(shot: Shot, groom: Groom) -> dict[str, NDArray[np.float64]]
         _check_least("motion.weight", factor, LEAST_WEIGHT, groom.locks)
         for name, of_weight in {"radius": np.sqrt(factor), "stretch": 1.0 / factor, "bend": factor**-2.0}.items():
             factors[name] = factors.get(name, 1.0) * of_weight
+    if shot.motion.air != Mapped():
+        factor = at_vertices(shot.motion, "air", groom, "motion.air", shot.motion.seed)
+        _check_product(shot.strands, "motion.air", "drag", factor, groom.locks)
+        factors["drag"] = factors.get("drag", 1.0) * factor
     return factors
 
 

@@ -52,7 +52,8 @@ std::vector<ResolutionFactors> corrections_of(const StrandModel &model, int firs
 void check_sizes(View<int> offsets, size_t n, View<unsigned char> held, const StrandVariation &variation) {
     if (offsets.empty() || offsets.front() != 0 || offsets.back() != int(n) || held.size() != n)
         throw std::invalid_argument("strands: offsets, points and held do not fit together");
-    for (const View<double> &factor : {variation.radius, variation.stretch, variation.bend, variation.twist, variation.damping})
+    for (const View<double> &factor :
+         {variation.radius, variation.stretch, variation.bend, variation.twist, variation.damping, variation.drag})
         if (!factor.empty() && factor.size() != n) throw std::invalid_argument("strands: a variation does not fit the points");
 }
 
@@ -91,7 +92,7 @@ void set_coefficients(StrandModel &model, int strand, const VariedMaterial &vari
         const ResolutionFactors &correction = corrections[i - first];
         for (const int vertex : {i, i + 1}) {
             model.mass[vertex] += 0.5 * material.density * varied.area_of_edge(i) * length * correction.mass;
-            model.drag[vertex] += 0.5 * material.drag * length;
+            model.drag[vertex] += 0.5 * material.drag * varied.on_edge(varied.variation.drag, i) * length;
         }
         model.damping[i] = material.damping * varied.at(varied.variation.damping, i);
         model.stretch_stiffness[i] = varied.stretching_of_edge(i) / length;

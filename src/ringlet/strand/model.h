@@ -47,7 +47,7 @@ inline constexpr StrandMaterialSetting strand_material_settings[] = {
 // Variation of the material along strands: factors per vertex on StrandMaterial, each n long or empty (1 everywhere). An edge
 // takes the mean of its two vertices.
 struct StrandVariation {
-    View<double> radius, stretch, bend, twist, damping;
+    View<double> radius, stretch, bend, twist, damping, drag;
 };
 
 // Rest shape and coefficients of all strands, packed like Curves: one row per vertex.
