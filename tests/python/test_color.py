@@ -28,8 +28,10 @@ from ringlet.groom.color import Preset
 from ringlet.io import HairWriter, read_groom, read_hairs, write_groom
 from ringlet.picture import Pose, sheet, still
 from ringlet.picture.camera import frame
+from ringlet.picture.engine import mitsuba
 from ringlet.picture.fiber import fiber_bsdf
-from ringlet.picture.render import build_scene, mitsuba, trace
+from ringlet.picture.render import trace
+from ringlet.picture.scene import build_scene
 from ringlet.picture.sheet import GAP
 from ringlet.picture.strands import load_fibres
 from shapes import ball

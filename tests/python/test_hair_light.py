@@ -8,8 +8,10 @@ from ringlet.data.camera import Camera
 from ringlet.data.curves import Curves
 from ringlet.data.pigment import USUAL_FIBER
 from ringlet.picture.along import HairField, hair_field
+from ringlet.picture.engine import mitsuba
 from ringlet.picture.passes import Passes
-from ringlet.picture.render import build_scene, mitsuba, trace
+from ringlet.picture.render import trace
+from ringlet.picture.scene import build_scene
 from ringlet.picture.strands import split
 
 RADIUS, SIZE = 0.05, 48

@@ -16,7 +16,9 @@ from ringlet.picture import HAIR_COLORS, VIEWS, Pose, PosedBody, sheet, still
 from ringlet.picture.along import hair_field
 from ringlet.picture.bodies import material
 from ringlet.picture.camera import frame
-from ringlet.picture.render import build_scene, mitsuba, trace
+from ringlet.picture.engine import mitsuba
+from ringlet.picture.render import trace
+from ringlet.picture.scene import build_scene
 from ringlet.picture.sheet import subsample
 from ringlet.picture.strands import fibres, load_fibres, spline_controls
 from ringlet.picture.tone import develop
@@ -185,7 +187,7 @@ def test_hairs_thinner_than_a_pixel_cover_as_much_as_in_a_large_picture(width: f
     camera = frame([hairs.points], view=(0.0, 0.0))
     for size, samples in ((20, 400), (320, 16)):
         scene = build_scene([], hairs, camera, size=(size, size), color=HAIR_COLORS["black"], max_depth=2)
-        coverage[size] = np.array(mitsuba().render(scene, spp=samples))[:, :, 3].mean()
+        coverage[size] = np.array(mitsuba().render(scene.loaded, spp=samples))[:, :, 3].mean()
     assert coverage[20] == pytest.approx(coverage[320], rel=0.04)
     lone = 200 * 0.08 * width / (4 * np.prod(camera.slopes) * camera.distance**2)  # without overlaps
     assert 0.8 * lone < coverage[320] < 1.02 * lone
@@ -196,7 +198,7 @@ def test_a_part_of_the_hairs_covers_as_much_as_all() -> None:
     camera = frame([hairs.points], view=(0.0, 0.0))
     for shown in (hairs, subsample(hairs, 200)):
         scene = build_scene([], shown, camera, size=(40, 40), color=HAIR_COLORS["black"], max_depth=2)
-        coverage.append(np.array(mitsuba().render(scene, spp=100))[:, :, 3].mean())
+        coverage.append(np.array(mitsuba().render(scene.loaded, spp=100))[:, :, 3].mean())
     assert coverage[1] == pytest.approx(coverage[0], rel=0.08)
 
 
@@ -247,6 +249,16 @@ def test_hair_is_distinguished_from_skin() -> None:
     assert share[where[:, 1], where[:, 0]].mean() > 0.4
     below = camera.project(ball().points[3:4])[0] * 64
     assert share[int(below[1]) - 6, int(below[0])] < 0.01
+
+
+def test_shapes_are_numbered_hairs_first_then_bodies_then_lights() -> None:
+    hairs, bodies = tuft(), [ball(), ball(0.5)]
+    camera = frame([hairs.points, bodies[0].points], view="front")
+    scene = build_scene(bodies, hairs, camera, size=(32, 32), color=HAIR_COLORS["black"], max_depth=2)
+    names = [shape.id() for shape in scene.loaded.shapes()]
+    assert names[: len(scene.hairs)] == ["hairs0"]
+    assert names[1 : 1 + scene.bodies] == ["body0", "body1"]
+    assert all(shape.is_emitter() for shape in scene.loaded.shapes()[3:])
 
 
 def test_tone_mapping_is_monotone_and_compresses_highlights() -> None:

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 
-HAIRS = "hairs"  # beginning of the names of shapes of hairs in a scene
+from ringlet.picture.scene import Scene
+
 REACH = 6  # pixels to each side along a hair
 ALIKE = 0.7  # cosine of the double angle from which on a pixel counts as along the same hairs
 
@@ -50,15 +51,15 @@ class HairField:
         return total / weights[:, :, None]
 
 
-def hair_field(mi: Any, scene: Any) -> HairField:
+def hair_field(mi: Any, scene: Scene) -> HairField:
     """Casts a ray per pixel to see where hair is, and how it runs."""
-    is_hair = np.array([False, *(shape.id().startswith(HAIRS) for shape in scene.shapes())])  # 0 is the background
-    if not is_hair.any():
+    if not scene.hairs:
         return HairField(np.zeros((1, 1), np.float32), np.zeros((1, 1, 2), np.float32))
     integrator = mi.load_dict({"type": "aov", "aovs": "tangent:dp_dv,shape:shape_index"})
-    to_camera = np.array(scene.sensors()[0].world_transform().matrix).reshape(4, 4)[:3, :3].T
-    seen = np.array(mi.render(scene, integrator=integrator, spp=1), np.float64)
-    hair = is_hair[np.rint(seen[:, :, 3]).astype(np.int64)].astype(np.float64)
+    to_camera = np.array(scene.loaded.sensors()[0].world_transform().matrix).reshape(4, 4)[:3, :3].T
+    seen = np.array(mi.render(scene.loaded, integrator=integrator, spp=1), np.float64)
+    shape = np.rint(seen[:, :, 3])  # 0 is the background
+    hair = ((shape > 0) & (shape <= len(scene.hairs))).astype(np.float64)
     run = seen[:, :, :3] @ to_camera.T[:, :2]
     squared = np.maximum((run**2).sum(axis=2), 1e-30)
     double = np.stack([run[:, :, 0] ** 2 - run[:, :, 1] ** 2, 2.0 * run[:, :, 0] * run[:, :, 1]], axis=2)

@@ -18,8 +18,9 @@ from ringlet.data.pigment import HairColor, hair_color
 from ringlet.picture.bodies import PosedBody
 from ringlet.picture.camera import frame as frame_camera
 from ringlet.picture.motion import Pose
-from ringlet.picture.render import Progress, build_scene, over_backdrop, trace
+from ringlet.picture.render import Progress, over_backdrop, trace
 from ringlet.picture.rigs import Rig, check_rig
+from ringlet.picture.scene import build_scene
 from ringlet.picture.still import subject
 from ringlet.picture.strands import hair_widths
 from ringlet.picture.tone import develop

@@ -24,13 +24,13 @@ from ringlet.picture.layers import Layers
 from ringlet.picture.motion import Pose
 from ringlet.picture.render import (
     Progress,
-    build_scene,
     layers_of,
     over_backdrop,
     trace,
     trace_growing,
 )
 from ringlet.picture.rigs import Rig, check_rig
+from ringlet.picture.scene import Scene, build_scene
 from ringlet.picture.tone import develop
 
 
@@ -122,7 +122,7 @@ def _taken(
         "rig": standpoint.rig,
     }
 
-    def scene_at(fraction: float) -> Any:
+    def scene_at(fraction: float) -> Scene:
         now = pose if closing is None else pose.towards(closing, fraction)
         at = camera if now.camera is None else place(settings, subject(now), lock, now.camera).camera
         return build_scene(now.bodies, now.hairs, at, **look)
@@ -136,7 +136,7 @@ def _taken(
         denoise=settings.denoiser == "oidn",
         moved=None if closing is None else scene_at,
     )
-    return Taken(image, layers_of(scene, camera, pose.hairs, pigments) if layers else None)
+    return Taken(image, layers_of(scene, camera, pigments) if layers else None)
 
 
 def place(

@@ -11,7 +11,7 @@ template <class T, class Fill> std::vector<T> collect_ranges(int count, const Fi
     constexpr int range = 1024;
     const int ranges = (count + range - 1) / range;
     std::vector<std::vector<T>> lists(ranges);
-#pragma omp parallel for schedule(dynamic)
+#pragma omp parallel for schedule(dynamic) if (ranges > 1)
     for (int r = 0; r < ranges; ++r) fill(r * range, std::min(count, (r + 1) * range), lists[r]);
     size_t size = 0;
     for (const auto &list : lists) size += list.size();
