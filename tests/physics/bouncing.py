@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 from ringlet.api.demo import with_rest_shape
 from ringlet.data.motion import Word
 from ringlet.shot import Shot
@@ -17,10 +18,11 @@ WHIP = 0.02  # m that the step of a tip in a frame differs from the mean of its 
 
 @dataclass
 class Clip:
-    """What came out of a clip; arrays have one value a lock."""
+    """What came out of a clip; arrays have one value a lock. ``points`` are those of the locks, by frame."""
 
     words: dict[str, Word]
     whips: int
+    points: NDArray[np.float32]
 
 
 def shot_and_groom(folder: Path, locks: int) -> tuple[Shot, ringlet.Groom]:
@@ -43,4 +45,4 @@ def clip(folder: Path, shot: Shot, groom: ringlet.Groom) -> Clip:
     _, near = cKDTree(groom.locks.points[tips]).query(groom.locks.points[tips], k=9)
     steps = np.diff(cache.points[:, tips], axis=0)
     apart = np.linalg.norm(steps - steps[:, near[:, 1:]].mean(axis=2), axis=-1)
-    return Clip({word.name: word for word in words}, int(np.count_nonzero(apart > WHIP)))
+    return Clip({word.name: word for word in words}, int(np.count_nonzero(apart > WHIP)), cache.points)

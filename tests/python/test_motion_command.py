@@ -152,12 +152,19 @@ def test_locks_that_cannot_stand_are_named_with_what_would_help(example):
 
 
 def test_a_simulation_is_held_against_what_was_asked(example):
-    shot, cache = asked(example, "bounce = 6"), example / "held_against.usdc"
-    shot.write_text(shot.read_text().replace("frames = [1, 4]", "frames = [1, 14]"))
+    """The head turns in four frames, and is still after them."""
+    shot = asked(example, "bounce = 6\nsettle = 0.5")
+    cache, early = example / "held_against.usdc", example / "early.usdc"
+    shot.write_text(shot.read_text().replace("frames = [1, 4]", "frames = [1, 18]"))
+    assert run("sim", shot, "-o", early, "--frames", "1:14").exit_code == 0
+    brief = ringlet.motion_words(shot, cache=early)
+    assert np.isnan(word(brief, "settle").found).all()
+    assert any("does not show how soon locks settle" in note for note in brief.notes)
     assert run("sim", shot, "-o", cache).exit_code == 0
     motion = ringlet.motion_words(shot, cache=cache)
-    near = np.abs(word(motion, "bounce").found / 6.0 - 1.0) <= 0.15
-    assert any(f"{near.sum()} of 8 locks show the bounce that is asked within 15 %" in note for note in motion.notes)
+    for name, of in (("bounce", 6.0), ("settle", 0.5)):
+        near = np.abs(word(motion, name).found / of - 1.0) <= 0.15
+        assert any(f"{near.sum()} of 8 locks show the {name} that is asked within 15 %" in at for at in motion.notes)
 
 
 def test_a_simulation_has_the_motion_that_words_ask_for(example):

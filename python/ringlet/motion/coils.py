@@ -9,12 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet.data.curves import Curves
-from ringlet.motion.stepping import shown_by_itself
+from ringlet.motion.stepping import SETTLED, shown_by_itself
 
 Array = NDArray[np.float64]
 
 PADDED = 8  # length of a spectrum, in lengths of its lock
-LEAST_FRAMES = 12  # in which a vibration can be found
+LEAST_FRAMES = 12  # in which a vibration can be found, and in which it can be seen to settle
+CALM = 0.5  # acceleration of a root that no longer drives a vibration [m/s²]
 STILL = 1e-4  # change of a lock's length, relative to it, in which none can
 
 
@@ -54,7 +55,9 @@ class SeenMotion:
 
     opens, closes: how much longer a lock is along its coil than it is groomed, at most and at least, as a fraction
 
-    bounce, settle: of the vibration along the lock [Hz, s], as in ``Words``; NaN where none is found
+    bounce: of the vibration along the lock [Hz], as in ``Words``; NaN where none is found
+    settle: of that vibration once the root has come to rest [s], as in ``Words``; NaN where it does not for twelve
+            frames
     """
 
     opens: Array
@@ -73,7 +76,8 @@ def seen_motion(
 
     The vibration is that of a damped spring which the acceleration of the root along the lock drives. Its length y
     under the load u is fitted by y₂ = a y₁ + b y₀ + c u₂ + d u₁ + e in least squares (an ARX model), and z² = a z + b.
-    Other modes, which die sooner, shorten the time to settle.
+    Its damping is not used: other modes and contact are noise, which makes it several times too large. The time to
+    settle is that in which energy is lost after the last drive.
     """
     lengths, before, lasts = CoilLengths(groomed), groomed.offsets[:-1], groomed.offsets[1:] - 1
     rest, stretch, roots, axes = lengths.of(groomed.points), list[Array](), list[Array](), list[Array]()
@@ -87,15 +91,31 @@ def seen_motion(
     if len(y) >= LEAST_FRAMES:
         accelerations = rate**2 * np.diff(places, 2, axis=0)
         load = np.einsum("kli,kli->kl", np.asarray(gravity) - accelerations, np.array(axes)[1:-1])
+        driven = np.linalg.norm(accelerations, axis=2) > CALM
+        calm = np.where(driven.any(axis=0), len(y) - 1 - driven[::-1].argmax(axis=0), 0)
         for lock in np.flatnonzero(np.ptp(y, axis=0) > STILL):
-            bounce[lock], settle[lock] = _vibration(y[:, lock], load[:, lock], rate)
+            bounce[lock] = _frequency(y[:, lock], load[:, lock], rate)
+            free = y[calm[lock] :, lock]
+            if len(free) >= LEAST_FRAMES and np.ptp(free) > STILL:
+                settle[lock] = _settling(free) / rate
     return SeenMotion(y.max(axis=0), y.min(axis=0), bounce, settle)
 
 
-def _vibration(y: Array, load: Array, rate: float) -> tuple[float, float]:
-    """Frequency [Hz] and time to settle [s] of a series under a load at its inner frames."""
+def _frequency(y: Array, load: Array, rate: float) -> float:
+    """Frequency [Hz] of a series under a load at its inner frames."""
     known = np.stack([y[1:-2], y[:-3], load[1:], load[:-1], np.ones(len(y) - 3)], axis=1)
     a, b = np.linalg.lstsq(known, y[2:-1], rcond=None)[0][:2]
     z = np.roots([1.0, -a, -b])
-    frequency, settle = shown_by_itself(rate * np.log(z[np.abs(z).argmax()].astype(np.complex128)))
-    return float(frequency), float(settle)
+    return float(shown_by_itself(rate * np.log(z[np.abs(z).argmax()].astype(np.complex128)))[0])
+
+
+def _settling(y: Array) -> float:
+    """Frames in which a free vibration goes to a twentieth, by its energy from each frame to the end (Schroeder 1965).
+
+    That integral has no ripples. Its logarithm falls along a line, which is fitted until a twentieth of it is left.
+    """
+    energy = np.cumsum(np.diff(y)[::-1] ** 2)[::-1]
+    left = np.maximum(energy / energy[0], SETTLED**4)  # it may lie still at last
+    below = np.flatnonzero(left < SETTLED)
+    fall = np.log(left[: below[0] + 1 if below.size else None])
+    return float(2.0 * np.log(SETTLED) / np.polyfit(np.arange(len(fall)), fall, 1)[0])

@@ -141,6 +141,11 @@ def _came_out(word: Word, asked: Array) -> Iterable[str]:
             f"In the simulation {near.sum()} of {near.size} {word.group} show the {word.name} that is asked within "
             f"{100.0 * NEAR:.0f} %; the median is {np.median(word.found[known]):.3g} {word.unit}."
         )
+    elif word.name == "settle":
+        yield (
+            f"The simulation does not show how soon {word.group} settle: their roots move until its end. Let the shot "
+            f"run on for half a second, or as long as they are to ring."
+        )
 
 
 def _notes(shot: Shot, clip: Clip, shown: Words, by_itself: Words) -> Iterable[str]:
