@@ -183,6 +183,17 @@ def test_words_that_the_steps_cannot_show_are_refused_with_steps_that_can(words)
     assert shown(shot(better), groom("3B")).bounce[0] == pytest.approx(11.0, rel=0.05)
 
 
+def test_locks_without_a_word_of_hair_get_a_rest_shape():
+    """Straight hair that stands falls over by its own stiffness, so that it has no swing to be a factor on."""
+    standing = groom("2C", "3B")
+    rows = standing.locks.offsets[:2]
+    standing.locks.points[slice(*rows)] *= [1.0, -1.0, 1.0]
+    scene = shot(f"{EQUILIBRIUM}[strands]\nyoungs_modulus = 1e9\n[motion]\nswing = {{ value = 1.3, of_hair = true }}\n")
+    asked = with_words(scene, standing).locks.curve["asked_swing"]
+    assert np.isnan(asked[0]) and asked[1] > 0.0
+    assert np.isfinite(solve_rest_shape(scene, standing).rest.points).all()
+
+
 def test_a_rest_shape_is_stale_once_the_words_change():
     scene, made = shot(EQUILIBRIUM + WORDS), groom("3B")
     stored, of = to_curves(solve_rest_shape(scene, made), scene), dependencies(scene)

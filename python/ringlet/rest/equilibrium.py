@@ -74,7 +74,6 @@ def equilibrium(
     its groomed shape, or what hangs ten times nearer to it.
     """
     locks = groom.locks
-    locks.check("loft: locks")
     _check(shot, locks)
     strands, most = make_strands(shot, groom), shot.rest.stiffen
     frames = strands.directors.copy() if frames is None else frames

@@ -69,7 +69,6 @@ def loft(shot: Shot, groom: Groom, *, progress: Progress | None = None) -> Loft:
     A lock that does not get there, as where it would fall over with any rest shape, keeps the best that was found.
     """
     locks = groom.locks
-    locks.check("loft: locks")
     if (locks.counts <= shot.held).any():
         raise UserError(f"loft: held is {shot.held}, but a lock has {locks.counts.min()} points; hold fewer")
     solver = _HangingSolver(shot, groom)

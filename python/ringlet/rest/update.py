@@ -35,6 +35,7 @@ def solve_rest_shape(
     progress: Progress | None = None,
 ) -> Loft:
     """The rest shape that a shot asks for, by its method; one that asks for none gets a loft. See ``equilibrium``."""
+    groom.locks.check("loft: locks")  # words are not: locks that fall over have none
     made = with_words(shot, groom)
     if rest_mode(shot) == "equilibrium":
         found = equilibrium(shot, made, obstacles=obstacles, support=support, frames=frames, progress=progress)
