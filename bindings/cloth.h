@@ -1,7 +1,7 @@
 // A cloth as Python holds it.
 #pragma once
 
-#include "ringlet/scene/cloth_alone.h"
+#include "ringlet/scene/scene.h"
 
 #include <memory>
 

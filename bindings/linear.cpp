@@ -2,7 +2,6 @@
 #include "arrays.h"
 
 #include "ringlet/linear/direct.h"
-#include "ringlet/linear/pardiso.h"
 
 #include <nanobind/stl/string.h>
 #include <stdexcept>

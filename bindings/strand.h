@@ -1,7 +1,7 @@
 // Strands as Python holds them: a model with its state.
 #pragma once
 
-#include "ringlet/strand/step.h"
+#include "ringlet/strand/state.h"
 
 #include <optional>
 

@@ -1,6 +1,5 @@
 // Advection with bodies.
 #include "ringlet/scene/prescribed_motion.h"
-#include "ringlet/scene/space_map.h"
 
 #include <Eigen/Geometry>
 #include <boost/test/unit_test.hpp>

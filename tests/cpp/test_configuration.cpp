@@ -1,5 +1,5 @@
 // The configuration and the path limiter: moves end before pairs come too close, and what meets nothing moves fully.
-#include "ringlet/solver/path_limiter.h"
+#include "ringlet/solver/search_path.h"
 #include "spring_masses.h"
 
 #include <Eigen/Geometry>

@@ -1,6 +1,5 @@
 // Sparse matrices and direct solvers, against dense ones.
 #include "ringlet/linear/direct.h"
-#include "ringlet/linear/pardiso.h"
 
 #include <Eigen/Dense>
 #include <boost/test/data/test_case.hpp>

@@ -1,7 +1,7 @@
 // Constants that decide what continuous collision detection returns. Without a unit they are fractions or counts.
 #pragma once
 
-#include "ringlet/collision/settings.h"
+#include "ringlet/collision/mesh.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-// Model and state of a cloth: all that is fixed, and all that moves. Alone it is stepped by scene/cloth_alone.h.
+// Model and state of a cloth: all that is fixed, and all that moves. Alone it is stepped by scene/scene.h.
 #pragma once
 
 #include "ringlet/energy/cloth/membrane.h"

@@ -3,6 +3,7 @@
 
 #include "ringlet/collision/mesh.h"
 #include "ringlet/geometry/edge_batch.h"
+#include "ringlet/math/collect.h"
 
 #include <cmath>
 #include <vector>
@@ -86,7 +87,18 @@ template <class Pair> bool any_marked(const Pair &pair, View<unsigned char> obje
 
 // The contact pairs with a marked object at `positions`, where each object has made at most the given fraction of its path.
 // Objects beyond these are unmarked and at rest.
-std::vector<ContactPair> contact_pairs(const CollisionMesh &mesh, const ReachablePairs &pairs, View<Vec3> positions,
-                                       View<unsigned char> objects, View<double> fractions);
+inline std::vector<ContactPair> contact_pairs(const CollisionMesh &mesh, const ReachablePairs &pairs, View<Vec3> positions,
+                                              View<unsigned char> objects, View<double> fractions) {
+    const auto path = [&](const ReachablePair &pair, int k) {
+        return size_t(pair.object[k]) < fractions.size() ? fractions[pair.object[k]] * pair.path_length[k] : 0.0;
+    };
+    const auto ignore = [](const ReachablePair &, double) {};
+    return collect_ranges<ContactPair>(int(pairs.size()), [&](int begin, int end, std::vector<ContactPair> &found) {
+        NarrowPhase<const ReachablePair, decltype(ignore)> narrow_phase(mesh, positions, ignore, found);
+        for (int k = begin; k < end; ++k)
+            if (any_marked(pairs[k], objects) && pairs[k].slack < path(pairs[k], 0) + path(pairs[k], 1))
+                narrow_phase.add(pairs[k]);
+    });
+}
 
 } // namespace ringlet

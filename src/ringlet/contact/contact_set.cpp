@@ -1,16 +1,40 @@
 #include "ringlet/contact/contact_set.h"
 
-#include "ringlet/contact/known.h"
-#include "ringlet/contact/rotation.h"
 #include "ringlet/contact/settings.h"
 #include "ringlet/math/collect.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 namespace ringlet {
 namespace {
+
+// An orthonormal frame with its first axis along u and its second across u and v; 0 where they are parallel.
+Mat3 frame(const Vec3 &u, const Vec3 &v) {
+    Mat3 axes;
+    axes.col(0) = u.normalized();
+    axes.col(1) = u.cross(v).normalized();
+    axes.col(2) = axes.col(0).cross(axes.col(1));
+    return axes;
+}
+
+// The rotation by which a move from `start` to `end` turns a pair that it leaves rigid. It turns with the triangle or with both
+// edges; where these are almost parallel, with an edge and the line to the other. The normal does not tell: it also turns as
+// the closest points wander over a surface.
+Mat3 pair_rotation(const Stencil &pair, View<Vec3> start, View<Vec3> end) {
+    const int p = pair.vertex[0], q = pair.vertex[1], r = pair.vertex[2], s = pair.vertex[3];
+    const auto turned = [&](const auto &frame_of) { return Mat3(frame_of(end) * frame_of(start).transpose()); };
+    if (!pair.edge_edge()) return turned([&](View<Vec3> x) { return frame(x[r] - x[q], x[s] - x[q]); });
+    const auto almost_parallel = [&](View<Vec3> x) {
+        const Vec3 a = x[q] - x[p], b = x[s] - x[r];
+        return a.cross(b).squaredNorm() <= contact_settings::parallel_sine2 * a.squaredNorm() * b.squaredNorm();
+    };
+    if (almost_parallel(start) || almost_parallel(end))
+        return turned([&](View<Vec3> x) { return frame(x[q] - x[p], pair.separation(x)); });
+    return turned([&](View<Vec3> x) { return frame(x[q] - x[p], x[s] - x[r]); });
+}
 
 // The contact of a pair at one of its points, but for what depends on the activation distance.
 Contact contact_at(const CollisionMesh &mesh, const ContactMaterial &material, const ContactPair &pair,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ringlet/contact/initial_overlap.h"
+#include "ringlet/contact/material.h"
 #include "ringlet/contact/tie.h"
 #include "ringlet/math/lists.h"
 

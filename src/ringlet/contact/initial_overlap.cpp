@@ -1,7 +1,5 @@
 #include "ringlet/contact/initial_overlap.h"
 
-#include "ringlet/contact/known.h"
-
 #include <algorithm>
 
 namespace ringlet {

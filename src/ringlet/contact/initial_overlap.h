@@ -2,7 +2,7 @@
 #pragma once
 
 #include "ringlet/contact/contact.h"
-#include "ringlet/contact/stencil.h"
+#include "ringlet/contact/material.h"
 
 #include <vector>
 

@@ -1,6 +1,10 @@
-// Contact material: stiffness and friction of every vertex of the collision mesh.
+// Contact material: stiffness and friction of every vertex of the collision mesh, and the stiffness of pairs.
 #pragma once
 
+#include "ringlet/contact/stencil.h"
+
+#include <algorithm>
+#include <limits>
 #include <vector>
 
 namespace ringlet {
@@ -15,5 +19,22 @@ struct ContactMaterial {
 
     double friction_of(int vertex, int other) const { return friction[material[vertex] * materials + material[other]]; }
 };
+
+// The stiffness of a pair: that of the softer side [N/m]. A prescribed vertex beside a free one of the same edge is as soft as
+// that: else the free one would be pushed without bound.
+inline double pair_stiffness(const CollisionMesh &mesh, const Stencil &stencil, const ContactMaterial &material) {
+    const bool of_strands = std::max(stencil.vertex[0], stencil.vertex[3]) < int(mesh.along_curve.size());
+    const std::vector<double> &stiffness = of_strands ? material.stiffness : material.firm_stiffness;
+    const auto of_side = [&](int begin, int end) {
+        double softest = std::numeric_limits<double>::infinity(), compliance = 0.0;
+        for (int i = begin; i < end; ++i) softest = std::min(softest, stiffness[stencil.vertex[i]]);
+        for (int i = begin; i < end; ++i) {
+            const double own = stiffness[stencil.vertex[i]];
+            compliance += std::abs(stencil.weight[i]) / (std::isfinite(own) ? own : softest);
+        }
+        return 1.0 / compliance;
+    };
+    return std::min(of_side(0, stencil.first), of_side(stencil.first, 4));
+}
 
 } // namespace ringlet

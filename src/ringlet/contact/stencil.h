@@ -2,7 +2,6 @@
 #pragma once
 
 #include "ringlet/collision/narrow_phase.h"
-#include "ringlet/contact/material.h"
 #include "ringlet/contact/settings.h"
 
 #include <cstdint>
@@ -17,6 +16,23 @@ inline uint64_t contact_name(const ContactPair &pair, int point = 0) {
            uint64_t(point);
 }
 inline uint64_t pair_of(uint64_t contact_name) { return contact_name & ~uint64_t(max_points_of_pair); }
+
+// Walks through two lists in the order of names together: calls work(known, found) for each of `found` whose name one of
+// `known` has.
+template <class Known, class Found, class NameOf, class Work>
+void for_known(Known &known, Found &found, const NameOf &name_of, const Work &work) {
+    auto next = known.begin();
+    for (auto &now : found) {
+        const uint64_t name = name_of(now);
+        while (next != known.end() && next->name < name) ++next;
+        if (next == known.end()) return;
+        if (next->name == name) work(*next, now);
+    }
+}
+
+template <class Known, class Found, class Work> void for_known(Known &known, Found &found, const Work &work) {
+    for_known(known, found, [](const auto &now) { return now.name; }, work);
+}
 
 struct Stencil {
     std::array<int, 4> vertex;
@@ -35,11 +51,13 @@ struct Stencil {
     }
 };
 
-Stencil stencil(const CollisionMesh &mesh, const ContactPair &pair, const ClosestPoints &closest);
-
-// That of the softer side [N/m]. A prescribed vertex beside a free one of the same edge is as soft as that: else the free one
-// would be pushed without bound.
-double pair_stiffness(const CollisionMesh &mesh, const Stencil &stencil, const ContactMaterial &material);
+inline Stencil stencil(const CollisionMesh &mesh, const ContactPair &pair, const ClosestPoints &closest) {
+    Stencil stencil{{}, closest.weights, pair.edge_edge ? 2 : 1};
+    with_vertices(mesh, pair, [&](const auto &a, const auto &b) {
+        std::copy(b.begin(), b.end(), std::copy(a.begin(), a.end(), stencil.vertex.begin()));
+    });
+    return stencil;
+}
 
 // A point at which a pair pushes, with its share of the stiffness.
 struct ContactPoint {

@@ -1,7 +1,5 @@
 #include "ringlet/linear/direct.h"
 
-#include "ringlet/linear/pardiso.h"
-
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCholesky>
 #include <algorithm>

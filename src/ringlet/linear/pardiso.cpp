@@ -1,4 +1,4 @@
-#include "ringlet/linear/pardiso.h"
+#include "ringlet/linear/direct.h"
 
 #include <dlfcn.h>
 #include <mutex>

@@ -2,8 +2,8 @@
 
 #include "ringlet/ccd/advected_move.h"
 #include "ringlet/math/disjoint_sets.h"
+#include "ringlet/scene/prescribed_motion.h"
 #include "ringlet/scene/settings.h"
-#include "ringlet/scene/space_map.h"
 
 #include <algorithm>
 #include <optional>

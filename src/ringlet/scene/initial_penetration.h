@@ -2,7 +2,7 @@
 #pragma once
 
 #include "ringlet/collision/mesh.h"
-#include "ringlet/solver/recovery_spring.h"
+#include "ringlet/solver/objective.h"
 
 #include <utility>
 #include <vector>

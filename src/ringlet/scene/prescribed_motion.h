@@ -1,6 +1,7 @@
-// A prescribed motion: where the bodies, roots and pins of a scene go in a step.
+// A prescribed motion: where the bodies, roots and pins of a scene go in a step, and the map of space that they make.
 #pragma once
 
+#include "ringlet/geometry/rigid_motion.h"
 #include "ringlet/scene/vertices.h"
 
 namespace ringlet {
@@ -24,6 +25,24 @@ struct PrescribedMotion {
 
     // Whether a body moves by an affine map, such as a rotation or what lies between two of its poses.
     bool moves_affinely(int body) const;
+};
+
+// The map of space that a prescribed motion makes: between bodies, what is near one moves along with it.
+// Patches of bodies, and of the pins of cloths, move as rigidly as they can, and the space between them by inverse-distance
+// weights (Shepard 1968). The map is continuous: as long as bodies do not come much closer to one another, nothing meets on it,
+// even where what follows one body rigidly would run into another.
+class SpaceMap {
+public:
+    explicit SpaceMap(const PrescribedMotion &motion);
+
+    Vec3 operator()(const Vec3 &point) const;
+
+private:
+    struct Patch {
+        std::vector<int> vertices;
+        RigidMotion motion; // from their middle
+    };
+    std::vector<Patch> patches_;
 };
 
 } // namespace ringlet

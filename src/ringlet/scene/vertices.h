@@ -4,7 +4,7 @@
 #include "ringlet/cloth/model.h"
 #include "ringlet/contact/tie.h"
 #include "ringlet/solver/vertex_table.h"
-#include "ringlet/strand/step.h"
+#include "ringlet/strand/state.h"
 
 #include <vector>
 

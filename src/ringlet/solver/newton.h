@@ -5,8 +5,8 @@
 #include "ringlet/solver/configuration.h"
 #include "ringlet/solver/line_search.h"
 #include "ringlet/solver/linear_system.h"
-#include "ringlet/solver/path_limiter.h"
-#include "ringlet/solver/refinement.h"
+#include "ringlet/solver/newton_rules.h"
+#include "ringlet/solver/search_path.h"
 
 namespace ringlet {
 

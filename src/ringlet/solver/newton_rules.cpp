@@ -1,9 +1,11 @@
 #include "ringlet/solver/newton_rules.h"
 
+#include "ringlet/solver/settings.h"
+
 #include <algorithm>
+#include <cmath>
 
 namespace ringlet {
-
 void StoppingRule::measure(const Objective &objective, const std::vector<double> &largest) {
     const std::vector<int> &cluster = objective.couplings.clusters();
     const size_t objects = converged_.size();
@@ -45,6 +47,26 @@ std::vector<unsigned char> Stall::may_move(const std::vector<double> &largest, d
     std::vector<unsigned char> may = stalled(largest, tolerance);
     for (size_t o = 0; o < may.size(); ++o) may[o] &= !stuck_[o];
     return may;
+}
+
+void Refinement::add(const ObjectMoves &moves, double tolerance) {
+    const BlockSet &blocks = objective_.blocks;
+    for (int object = 0; object < objective_.table.objects; ++object) {
+        if (!blocks.is_active(object)) continue;
+        const double length = moves.length[object], settled = blocks.of_object(object).settled_distance(blocks.lane_of(object));
+        limited_[object] = length > tolerance &&
+                           (moves.fraction[object] < solver_settings::full_move || (limited_[object] && length > settled));
+    }
+}
+
+bool Refinement::activate_unfinished(BlockSet &blocks, View<Vec3> now, const std::vector<unsigned char> &stay) {
+    for (int object = 0; object < objective_.table.objects; ++object)
+        limited_[object] =
+            stay[object] || (limited_[object] && blocks.of_object(object).is_stretched(blocks.lane_of(object), now));
+    std::vector<unsigned char> active = limited_;
+    for (int ring = 0; ring < solver_settings::refined_rings; ++ring) active = objective_.with_touched(active);
+    blocks.activate(std::move(active));
+    return std::count(limited_.begin(), limited_.end(), 1) > 0;
 }
 
 } // namespace ringlet

@@ -1,7 +1,8 @@
-// The rules of Newton's method: when it stops, how it damps its directions, and what it does about objects that do not move.
+// The rules of Newton's method: when it stops, how it damps its directions, which objects need more of its iterations, and what
+// it does about those that do not move.
 #pragma once
 
-#include "ringlet/solver/objective.h"
+#include "ringlet/solver/search_path.h"
 #include "ringlet/solver/settings.h"
 
 #include <vector>
@@ -64,6 +65,22 @@ public:
 
 private:
     std::vector<unsigned char> moved_, cautious_, stuck_; // objects
+};
+
+// Refinement: which objects need more iterations than were asked for, so that what is violent costs only where it is.
+class Refinement {
+public:
+    explicit Refinement(const Objective &objective) : objective_(objective), limited_(objective.table.objects, 0) {}
+
+    void add(const ObjectMoves &moves, double tolerance); // of each iteration, and of the initial guess
+
+    // Activates the objects that were limited and are stretched or that `stay`, those that touch them and so on for some rings,
+    // so that there is something to give way. False: there are none.
+    bool activate_unfinished(BlockSet &blocks, View<Vec3> now, const std::vector<unsigned char> &stay);
+
+private:
+    const Objective &objective_;
+    std::vector<unsigned char> limited_; // objects
 };
 
 } // namespace ringlet

@@ -2,14 +2,58 @@
 // P is block-diagonal: each block's own Hessian with what contacts do within each of their sides. C couples the sides.
 #pragma once
 
+#include "ringlet/collision/narrow_phase.h"
+#include "ringlet/math/types.h"
 #include "ringlet/solver/block_set.h"
-#include "ringlet/solver/contact_energy.h"
 #include "ringlet/solver/couplings.h"
-#include "ringlet/solver/recovery_spring.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace ringlet {
+
+// A one-sided spring that draws a vertex out of a body that it began in.
+// Energy ½ k (h − n · x)² below the plane n · x = h, none above. Implicit, it lifts no farther, however stiff it is.
+struct RecoverySpring {
+    int vertex;
+    Vec3 normal;              // n
+    double height, stiffness; // h [m], k [N/m]
+
+    double depth(const Vec3 &x) const { return std::max(height - normal.dot(x), 0.0); } // [m]
+    double energy(const Vec3 &x) const { return 0.5 * stiffness * depth(x) * depth(x); }
+};
+
+// Contact energies shared out to the objects, cached between the trials of a line search.
+// The barrier energy is that
+//   at_linearisation  of the contacts, where they were found: their gaps are known
+//   exact             of all pairs in reach, measured at the positions, be they contacts yet or not
+// Friction, and the energy of ties, are those of the contacts in both. What no changed object has a part in is kept.
+class ContactEnergy {
+public:
+    ContactEnergy(const VertexTable &table, const ContactSet &contacts) : table_(table), contacts_(contacts) {}
+
+    void at_linearisation(View<Vec3> positions, View<unsigned char> active);
+
+    // `traveled` says which part of its longest path each object has covered: a lower bound on gaps.
+    void exact(const ReachablePairs &pairs, View<Vec3> positions, View<double> traveled, View<unsigned char> changed);
+
+    // Adds the energies to those of the objects, half to each of two [J].
+    void add_to(std::vector<double> &of_objects) const;
+
+private:
+    struct Shared {
+        int a, b; // objects; −1: none, the side's motion is prescribed
+        double energy;
+    };
+    void remove(View<unsigned char> changed);
+    void measure_kept(View<Vec3> positions, View<unsigned char> changed);
+
+    const VertexTable &table_;
+    const ContactSet &contacts_;
+    std::vector<Shared> barriers_;
+    std::vector<std::array<int, 2>> objects_; // of each pair, as in Shared
+    std::vector<double> kept_;                // of each pair: friction, or that of a tie [J]
+};
 
 class Objective {
 public:

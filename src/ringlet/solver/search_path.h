@@ -1,7 +1,8 @@
-// The path that a Newton iteration searches along.
+// The path that a Newton iteration searches along, and its limit where it would lead through a contact.
 #pragma once
 
-#include "ringlet/solver/block_set.h"
+#include "ringlet/solver/configuration.h"
+#include "ringlet/solver/objective.h"
 
 namespace ringlet {
 
@@ -38,5 +39,34 @@ void straighten(const BlockSet &blocks, const std::vector<unsigned char> &object
 // Moves the blocks with objects that have `changed` to x(t), t being the objects' own.
 void move_along(const BlockSet &blocks, const AlignedVector &x, const std::vector<double> &t, const SearchPath &path,
                 const std::vector<unsigned char> &changed, AlignedVector &to);
+
+// How far each object wanted to go in a move, and the least fraction of that which it went.
+struct ObjectMoves {
+    std::vector<double> length, fraction; // [m]; 0 and 1 of those that are not active
+
+    // A move from `now` to `wanted` was limited to `to`.
+    ObjectMoves(const BlockSet &blocks, View<Vec3> now, View<Vec3> wanted, View<Vec3> to);
+
+    void shorten(const std::vector<double> &t); // to those fractions
+    bool are_full() const;
+};
+
+struct PathLimits {
+    Candidates::Serve serve;
+    Yield yield;                               // of what has an impact on the shortened path, too
+    const std::vector<unsigned char> &uniform; // per object: its cluster takes one fraction of the path
+};
+
+struct LimitedPath {
+    PlannedMove move; // that the path leads to
+    ObjectMoves moves;
+};
+
+// Shortens the path from x, which are the positions, until no pair comes closer than it may.
+// Strands first take the bent path. What meets something early on it goes straight instead, and half as far: the linear system
+// knows the contacts in that direction, while the bend leads the rest of a strand anywhere. What meets something later goes
+// that fraction. Both are limited once more.
+LimitedPath limit_path(const Objective &objective, Configuration &configuration, const AlignedVector &x,
+                       const PathLimits &limits, SearchPath &path, SceneReport &report);
 
 } // namespace ringlet

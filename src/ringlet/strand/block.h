@@ -3,7 +3,7 @@
 
 #include "ringlet/math/aligned.h"
 #include "ringlet/solver/block.h"
-#include "ringlet/strand/step.h"
+#include "ringlet/strand/state.h"
 
 #include <memory>
 #include <vector>

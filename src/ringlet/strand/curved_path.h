@@ -4,6 +4,8 @@
 #pragma once
 
 #include "ringlet/energy/strand/frame.h"
+#include "ringlet/energy/strand/stretch.h"
+#include "ringlet/math/unroll.h"
 #include "ringlet/strand/settings.h"
 #include "ringlet/strand/vertex_data.h"
 
@@ -105,5 +107,126 @@ void curved_path(int vertices, const Row *rows, const T *x, T step, const T *dir
         }
     }
 }
+
+// What Gauss–Newton leaves out of the second derivative of a strand's energy along its curved paths (curved_path.h), on which
+// edges and their frames rotate by s ω to second order:
+//   at a corner  P · (ω_a × ω_b)        P: the moment of bend and twist on the edge a before it
+//   of an edge   l F · (ω × (ω × t))    F: the gradient of inertia, gravity and drag by all vertices behind it
+// The first follows from exp(−s ω_b) exp(s ω_a) = exp(s (ω_a − ω_b) − ½ s² ω_b × ω_a + …), the second from that derivative of
+// exp(s ω) t. Left out are a moment times the square of a change of strain, which is small whatever the rotation, and the
+// forces of contacts, which cancel where neighbours rotate together. (Geometric stiffness of rods: Simo & Vu-Quoc 1986.)
+
+// What vertices behind an edge add up to: F, and how many of them are held.
+template <class T> struct LoadBehind {
+    Vec<T> force{};
+    T held{};
+
+    void add(const RodRow<T> *rows, const T *x, int i, double sign) {
+        const Vec<T> at{x[4 * i], x[4 * i + 1], x[4 * i + 2]};
+        force = force + (sign * rows[i].free * rows[i].inertia) * (at - rows[i].inertia_target);
+        if (i == 0) return;
+        const auto is_held = (rows[i].free == 0.0) & (rows[i - 1].stretch_stiffness > 0.0); // behind the tip nothing is
+        held += select(is_held, constant<T>(sign), T{});
+    }
+};
+
+// Takes edges and corners in order, from the root to the tip.
+template <class T> class PathCurvature {
+public:
+    // Of what was evaluated at x; `load`: of all vertices.
+    PathCurvature(const RodRow<T> *rows, const RodShape<T> *shapes, const T *x, const LoadBehind<T> &load)
+        : rows_(rows), shapes_(shapes), x_(x), load_(load) {}
+
+    // Calls add(column, rows below, value) for edge i, whose director has that spin, and for the corner before it, which has
+    // that moment. Only where all vertices behind are free: between held vertices paths are closed otherwise.
+    template <class Add> void add(int i, Vec<T> director_spin, Vec<T> moment, T weight, const Add &add) {
+        load_.add(rows_, x_, i, -1.0);
+        weight = select(load_.held > 0.5, T{}, weight);
+        const EdgeSpin spin = spin_of(i, director_spin);
+        add_edge(i, spin, weight, add);
+        if (i > 0) add_corner(i, before_, spin, weight_before_ * moment, add);
+        before_ = spin;
+        weight_before_ = weight;
+    }
+
+private:
+    // ω by the edge (its columns) and by γ l̄; `about` and `about_by_frame` are those of its component along the edge.
+    struct EdgeSpin {
+        Vec<T> by_edge[3], by_frame, about;
+        T about_by_frame;
+    };
+
+    EdgeSpin spin_of(int i, Vec<T> director_spin) const {
+        const RodShape<T> &s = shapes_[i];
+        EdgeSpin r;
+        const T share = rows_[i].frame_free * rotation_share(rows_, i);
+        r.about = share * director_spin;
+        r.about_by_frame = share / rows_[i].rest_length;
+        r.by_frame = r.about_by_frame * s.tangent;
+        const Vec<T> t = (1.0 / s.length) * s.tangent;
+        r.by_edge[0] = r.about.x * s.tangent + Vec<T>{T{}, t.z, -t.y}; // t × the x axis
+        r.by_edge[1] = r.about.y * s.tangent + Vec<T>{-t.z, T{}, t.x};
+        r.by_edge[2] = r.about.z * s.tangent + Vec<T>{t.y, -t.x, T{}};
+        return r;
+    }
+
+    // Across the edge the tension of its load takes the place of that of its stretch where it is larger. An edge that the
+    // limiter has left stretched so keeps that stiffness, without which the next iteration stretches it further.
+    template <class Add> void add_edge(int i, const EdgeSpin &spin, T weight, const Add &add) const {
+        const RodShape<T> &s = shapes_[i];
+        const Vec<T> load = load_.force;
+        const T stretch = stretch_across(s.length, rows_[i].damped_length, rows_[i].stretch_stiffness);
+        const T across = weight * max(-dot(load, s.tangent) / s.length - stretch, T{});
+        const Vec<T> twisting = (0.5 * weight) * cross(load, s.tangent), t = s.tangent;
+        const T a = rows_[i].free, b = rows_[i + 1].free;
+        unroll<0, 3>([&](auto c) {
+            const int before = 4 * i + c, after = before + 4;
+            unroll<0, 3>([&](auto r) {
+                T value = spin.about[r] * twisting[c] + twisting[r] * spin.about[c] - across * t[r] * t[c];
+                if (r == c) value += across;
+                if (r >= c) {
+                    add(before, r - c, a * value);
+                    add(after, r - c, b * value);
+                }
+                add(before, 4 + r - c, -(a * b * value));
+            });
+            add(before, 3 - c, -(a * spin.about_by_frame * twisting[c]));
+            add(4 * i + 3, 1 + c, b * spin.about_by_frame * twisting[c]);
+        });
+    }
+
+    template <class Add>
+    void add_corner(int i, const EdgeSpin &first, const EdgeSpin &second, Vec<T> moment, const Add &add) const {
+        const Vec<T> half = constant<T>(0.5) * moment, by_frame = cross(half, first.by_frame);
+        T by_edges[3][3]; // rows: the first
+        for (int r = 0; r < 3; ++r)
+            for (int c = 0; c < 3; ++c) by_edges[r][c] = dot(cross(half, first.by_edge[r]), second.by_edge[c]);
+        const T a = rows_[i - 1].free, b = rows_[i].free, d = rows_[i + 1].free;
+        const int frame = 4 * i - 1;
+        unroll<0, 3>([&](auto c) {
+            const int column0 = 4 * (i - 1) + c, column1 = 4 * i + c;
+            unroll<0, 3>([&](auto r) {
+                add(column0, 4 + r - c, a * b * by_edges[c][r]);
+                add(column0, 8 + r - c, -(a * d * by_edges[c][r]));
+                if (r >= c) add(column1, r - c, -(b * (by_edges[r][c] + by_edges[c][r])));
+                add(column1, 4 + r - c, b * d * by_edges[c][r]);
+            });
+            const T of_first = dot(cross(half, first.by_edge[c]), second.by_frame),
+                    of_second = dot(by_frame, second.by_edge[c]);
+            add(column0, 7 - c, -(a * of_first));
+            add(column1, 3 - c, b * of_first);
+            add(frame, 1 + c, -(b * of_second));
+            add(frame, 5 + c, d * of_second);
+        });
+        add(frame, 4, dot(by_frame, second.by_frame));
+    }
+
+    const RodRow<T> *rows_;
+    const RodShape<T> *shapes_;
+    const T *x_;
+    LoadBehind<T> load_; // of the present edge
+    EdgeSpin before_{};  // of the edge before
+    T weight_before_{};
+};
 
 } // namespace ringlet::RINGLET_SIMD

@@ -5,8 +5,8 @@
 #pragma once
 
 #include "ringlet/energy/strand/frame.h"
+#include "ringlet/strand/curved_path.h"
 #include "ringlet/strand/objective.h"
-#include "ringlet/strand/path_curvature.h"
 
 namespace ringlet::RINGLET_SIMD {
 

@@ -1,4 +1,4 @@
-// State of strands: all that moves.
+// The state of strands, and what acts on it without contact: the time step and the elastic energy.
 #pragma once
 
 #include "ringlet/strand/model.h"
@@ -30,5 +30,16 @@ std::vector<double> stabilising_stiffness(const StrandModel &model, const Strand
 
 // Model and state as pointers for the kernels. All arguments must live as long as the result.
 StrandArrays arrays_of(const StrandModel &model, StrandState &state, View<Vec3> targets, View<Vec3> forces);
+
+// One time step. `targets` are the positions of held vertices at its end [m] (rows of free vertices are not read), `forces`
+// external forces on the vertices [N]. One report per strand. The result does not depend on the number of threads.
+void step_strands(const StrandModel &model, StrandState &state, View<Vec3> targets, View<Vec3> forces, const StrandStep &step,
+                  std::vector<StrandReport> &reports);
+
+// Elastic energy [J] at these positions with relaxed material frames, and its gradient by the free vertices [N] (rows of held
+// vertices are zero). The Hessian is that of Newton's method, for one strand alone: dense, row-major, over 3 unknowns per
+// vertex, 4 with material frames; null to leave it out.
+double strand_energy(const StrandModel &model, const StrandState &state, Continuation continuation, View<Vec3> positions,
+                     std::vector<Vec3> &gradient, std::vector<double> *hessian);
 
 } // namespace ringlet
