@@ -214,14 +214,15 @@ def test_a_still_reports_progress_and_respects_its_time_limit(tmp_path: Path) ->
     steps: list[tuple[str, int, int]] = []
     still(Pose([], tuft(4)), tmp_path / "a.png", TINY, progress=lambda *step: steps.append(step))
     assert [done for _, done, _ in steps] == list(range(steps[-1][2] + 1))
-    steps.clear()
-    still(
-        Pose([], tuft(4)),
-        tmp_path / "b.png",
-        replace(TINY, samples=10_000, seconds=0.0),
-        progress=lambda *step: steps.append(step),
-    )
-    assert len(steps) == 3  # start, one pass, end
+    for denoiser, passes in (("none", 1), ("oidn", 3)):  # a picture that asks for a denoiser gets one
+        steps.clear()
+        still(
+            Pose([], tuft(4)),
+            tmp_path / "b.png",
+            replace(TINY, samples=10_000, seconds=0.0, denoiser=denoiser),
+            progress=lambda *step: steps.append(step),
+        )
+        assert len(steps) == passes + 2  # start and end
 
 
 @pytest.mark.parametrize("samples", [4, 40])

@@ -25,7 +25,7 @@ class PictureSettings:
 
     width, height: size [pixels]; the height is that of the camera's proportions by default, or of 9 : 10
     samples:       light paths per pixel
-    seconds:       time limit of the rendering; None for none
+    seconds:       time limit of the rendering, after the three passes that the denoiser needs; None for none
     color:         a hair colour; by default the hairs' own, or dark brown where they have none
     bounces:       largest number of bounces of a light path; dark hair ends most paths early, light hair needs 32
     view:          three_quarter, front, side or back; or azimuth and elevation of the camera [degrees], also as text.

@@ -25,8 +25,9 @@ Progress = Callable[[str, int, int], None]
 
 
 # Samples per pixel of one pass: enough to stratify a pixel and the lights, few enough for several passes to compare.
-# A time limit makes passes smaller, since denoising needs three of them.
+# A time limit makes passes smaller, since denoising needs a few of them.
 MAX_PASS_SAMPLES, MAX_TIMED_PASS_SAMPLES, MIN_PASSES = 8, 2, 4
+MIN_DENOISED_PASSES = 3
 
 # Most pixels along a side of the first picture of one that grows.
 COARSE = 240
@@ -47,15 +48,16 @@ def trace(
     """Renders light and coverage (r, g, b, a), shape (height, width, 4): the mean of independent passes, denoised.
 
     samples:  light paths per pixel
-    seconds:  time limit; a pass that would exceed it is not started
+    seconds:  time limit; a pass that would exceed it is not started, but for those that denoising needs
     progress: called with "picture", the passes done and their number
-    denoise:  whether noise is removed; it takes three passes
+    denoise:  whether noise is removed; it takes ``MIN_DENOISED_PASSES``
     moved:    builds the scene at a fraction of the shutter time, for motion blur
     """
     mi = mitsuba()
     most = MAX_PASS_SAMPLES if seconds is None else MAX_TIMED_PASS_SAMPLES
     per_pass = min(max(samples // (MIN_PASSES if moved is None else MIN_MOVED_PASSES), 1), most)
     passes = -(-samples // per_pass)
+    enough = MIN_DENOISED_PASSES if denoise else 1
     began = time.monotonic()
     accumulated, done = Passes(), 0
     if progress:
@@ -67,11 +69,11 @@ def trace(
         if progress:
             progress("picture", done, passes)
         elapsed = time.monotonic() - began
-        if seconds is not None and elapsed * (done + 1) / done > seconds:
+        if seconds is not None and done >= enough and elapsed * (done + 1) / done > seconds:
             break
     if progress and done < passes:
         progress("picture", passes, passes)
-    if done < 3 or not denoise:
+    if done < MIN_DENOISED_PASSES or not denoise:
         return accumulated.mean().astype(np.float32)
     return _denoised(scene, accumulated)
 
@@ -85,7 +87,7 @@ def trace_growing(
 
     coarse: most pixels along a side of the small one
     """
-    mi, accumulated, denoised = mitsuba(), Passes(), denoise and samples >= 3
+    mi, accumulated, denoised = mitsuba(), Passes(), denoise and samples >= MIN_DENOISED_PASSES
     if max(size) > coarse:
         small = tuple(max(1, round(side * coarse / max(size))) for side in size)
         sensor = image_sensor(mi, camera, (small[0], small[1]), scene_scale(camera))
