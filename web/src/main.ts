@@ -1,7 +1,8 @@
 // The page: connects what the server says with the picture and the panels.
 
 import "./base.css";
-import "./style.css";
+import "./page.css";
+import "./controls.css";
 import { Vector3 } from "three";
 import { h } from "./dom";
 import { Link, type LinkState } from "./link";
@@ -23,7 +24,6 @@ import { References } from "./panel/references";
 import { RenderPanel } from "./panel/render";
 import { Settings } from "./panel/settings";
 import { Snapshots } from "./panel/snapshots";
-import { Sheets } from "./panel/sheets";
 import { Stack } from "./panel/stack";
 import { PaintTool } from "./panel/paint";
 import { PresetTool } from "./panel/presets";
@@ -32,6 +32,7 @@ import { Notices, Status } from "./panel/status";
 import { TimelineBar } from "./panel/timeline";
 import { Tray } from "./panel/tray";
 import { Viewbar } from "./panel/viewbar";
+import { Sheets } from "./panel/sheets"; // the last of the panels, since its style places the others on a phone
 import type { FromServer } from "./protocol";
 import { keep } from "./view/capture";
 import { Viewer } from "./view/viewer";

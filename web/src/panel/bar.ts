@@ -1,5 +1,6 @@
 // The bar at the top: the file, what was done to it, who leads, and how the page looks.
 
+import "./bar.css";
 import { h, iconButton } from "../dom";
 import type { File, Model } from "../model";
 import { choices, compareWith } from "./compare";

@@ -1,5 +1,6 @@
 // One setting as a control. What the file does not say shows its default, more quietly.
 
+import "./field.css";
 import { h, iconButton } from "../dom";
 import type { File, Model, Place } from "../model";
 import type { Json } from "../protocol";

@@ -1,5 +1,6 @@
 // What has changed since the file was saved, and saving it under another name.
 
+import "./files.css";
 import { h } from "../dom";
 import type { File, Model } from "../model";
 import { openDialog } from "./dialog";

@@ -1,5 +1,6 @@
 // A tool in the hand: its panel, and its strokes over the picture while it is on. Sculpting, painting and drawing are such.
 
+import "./hand_tool.css";
 import { MOUSE } from "three";
 import { h } from "../dom";
 import type { Model } from "../model";

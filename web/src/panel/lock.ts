@@ -1,5 +1,6 @@
 // Locks: click one to choose it, or draw a lasso with Shift; isolate them, drag points of one, return them.
 
+import "./lock.css";
 import { Vector3 } from "three";
 import { h, iconButton } from "../dom";
 import type { Model, Place } from "../model";

@@ -1,5 +1,6 @@
 // A number with its unit: text that takes arithmetic and units. The label scrubs it.
 
+import "./number.css";
 import { h } from "../dom";
 import { parseQuantity, Refusal, type Kind, type Typed } from "./quantity";
 import { rounded } from "./range";

@@ -1,5 +1,6 @@
 // What stands in the way, with buttons that remedy it; it stays until it is gone. Also the progress of long work.
 
+import "./problems.css";
 import { h } from "../dom";
 import type { Model } from "../model";
 import type { FromPage, Problem } from "../protocol";

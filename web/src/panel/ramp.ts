@@ -1,5 +1,6 @@
 // A curve from root to tip, drawn by its points: drag them, click between them for another, Delete takes one away.
 
+import "./ramp.css";
 import { h } from "../dom";
 
 export type Ramp = [number, number][];

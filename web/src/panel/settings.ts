@@ -1,5 +1,6 @@
 // The settings of the stage that is chosen: what its file says, the most used and the pinned ones; the others on demand.
 
+import "./settings.css";
 import { h } from "../dom";
 import type { Model } from "../model";
 import type { Field } from "./field";

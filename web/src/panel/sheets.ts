@@ -1,5 +1,6 @@
 // On a narrow screen one panel at a time is open below the picture, chosen here; wide screens show all.
 
+import "./sheets.css";
 import { h } from "../dom";
 import type { Model } from "../model";
 

@@ -1,5 +1,6 @@
 // The stages of the groom from guides to hairs: choose, mute, solo, move, add and remove.
 
+import "./stack.css";
 import { h, ICONS, icon, iconButton } from "../dom";
 import type { Model, Place } from "../model";
 import type { Json, Stage } from "../protocol";

@@ -1,5 +1,6 @@
 // Numbers in sight, and a line for what went wrong.
 
+import "./status.css";
 import { count, h } from "../dom";
 import type { Model } from "../model";
 import type { Json } from "../protocol";
