@@ -3,7 +3,6 @@
 import "./base.css";
 import "./page.css";
 import "./controls.css";
-import { Vector3 } from "three";
 import { h } from "./dom";
 import { Link, type LinkState } from "./link";
 import { Model } from "./model";
@@ -33,7 +32,7 @@ import { TimelineBar } from "./panel/timeline";
 import { Tray } from "./panel/tray";
 import { Viewbar } from "./panel/viewbar";
 import { Sheets } from "./panel/sheets"; // the last of the panels, since its style places the others on a phone
-import type { FromServer } from "./protocol";
+import type { SharePage, Welcome } from "./protocol";
 import { keep } from "./view/capture";
 import { Viewer } from "./view/viewer";
 
@@ -50,7 +49,7 @@ class App {
   private readonly notes: Notes;
   private readonly pointer: PresenterPointer;
   readonly render: RenderPanel;
-  private readonly notices = new Notices();
+  private readonly notices = new Notices(this.model);
   private readonly problems: ProblemBar;
   private readonly status = new Status(this.model);
   private readonly clearArea: ClearArea;
@@ -64,6 +63,7 @@ class App {
     this.problems = new ProblemBar(this.model, people.questions);
     root.append(picture);
     this.viewer = new Viewer(picture);
+    this.fillPicture();
     this.lock = new LockTool(this.model, this.viewer);
     this.timeline = new TimelineBar(this.model, this.viewer, (frame) => this.status.simulated(frame.statistics));
     this.brush = new BrushTool(this.model, this.viewer);
@@ -139,11 +139,13 @@ class App {
     const preferred = matchMedia("(prefers-color-scheme: light)").matches ? "light" : "dark";
     this.setTheme((localStorage.getItem("ringlet-theme") as "dark" | "light" | null) ?? preferred);
     this.model.link = new Link(
-      (message) => this.hear(message),
+      (message) => this.model.take(message),
       (state, why) => this.connected(state, why),
       () => this.model.welcome !== null && this.model.role.leads,
       ownName,
     );
+    this.model.hear("welcome", (message) => this.welcome(message));
+    this.model.hear("share_page", (message) => this.sharePage(message));
     addEventListener("beforeunload", (event) => {
       (document.activeElement as HTMLElement | null)?.blur(); // what is typed counts
       if (document.documentElement.dataset["link"] !== "open" && this.model.link?.unanswered) event.preventDefault();
@@ -183,166 +185,46 @@ class App {
       }
   }
 
-  private hear(message: FromServer): void {
+  /** The picture shows what comes before panels hear of it. */
+  private fillPicture(): void {
     const { model, viewer } = this;
-    switch (message.kind) {
-      case "welcome":
-        model.link?.met(message.heard);
-        if (model.welcome && (model.welcome.name !== message.name || model.welcome.mode !== message.mode)) this.reset();
-        else if (this.session && this.session !== message.session) {
-          model.numbers = null;
-          model.problems = [];
-          for (const side of model.others) viewer.compare(side, false); // the new server compares nothing
-          model.compared = {};
-          model.tell("compared");
-          if (!message.recovered) this.giveBack();
-        }
-        this.kept = {};
-        this.session = message.session;
-        model.welcome = message;
-        if (message.mode === "shot" && !model.documents.shot) model.choose("shot", ["strands"]);
-        model.tell("welcome");
-        this.timeline.found();
-        break;
-      case "heard":
-        model.link?.noteHeard(message.count);
-        break;
-      case "document":
-        model.documents[message.file] = message;
-        model.tell("document");
-        break;
-      case "role":
-        model.role = message;
-        model.tell("role");
-        if (model.settled || model.stuck) model.link?.sayAgain();
-        break;
-      case "files":
-        model.files = message.names;
-        model.tell("files");
-        break;
-      case "numbers":
-        model.numbers = message;
-        model.tell("numbers");
-        if (model.settled) model.link?.sayAgain();
-        break;
-      case "lock_motion":
-        model.lockMotion = message;
-        model.tell("lock_motion");
-        break;
-      case "problems":
-        model.problems = message.problems;
-        model.tell("problems");
-        model.tell("document");
-        if (model.stuck) model.link?.sayAgain(); // what was not heard may be what makes the groom possible
-        break;
-      case "progress":
-        model.progress = message.stage ? message : null;
-        model.tell("progress");
-        break;
-      case "painted":
-        model.painted = message;
-        model.tell("painted");
-        break;
-      case "presets":
-        model.presets = message.presets;
-        model.tell("presets");
-        break;
-      case "names":
-        model.names = message;
-        model.tell("names");
-        break;
-      case "guides":
-        model.guides = message;
-        viewer.guides.set(message);
-        model.tell("guides");
-        viewer.invalidate();
-        break;
-      case "measured":
-        model.measured = message;
-        model.tell("measured");
-        if (model.overlay) this.timeline.overlay();
-        break;
-      case "body":
-        viewer.stage.setBody(message);
-        break;
-      case "hairs":
-        viewer.stage.setHairs(message);
-        this.timeline.displaced(message.side);
-        break;
-      case "colors":
-        viewer.stage.setColors(message);
-        break;
-      case "locks":
-        viewer.setLocks(message);
-        this.timeline.displaced(message.side);
-        if (message.side === "a") this.lock.arrived();
-        break;
-      case "timeline":
-        model.timeline = message;
-        model.tell("timeline");
-        break;
-      case "frame":
-        this.timeline.add(message);
-        break;
-      case "compared":
-        if (message.name) model.compared[message.side] = message;
-        else delete model.compared[message.side];
-        if (message.side !== "a") viewer.compare(message.side, message.name !== "");
-        model.tell("compared");
-        break;
-      case "snapshots":
-        model.snapshots = message.snapshots;
-        model.tell("snapshots");
-        break;
-      case "notes":
-        model.notes = message.notes;
-        model.tell("notes");
-        break;
-      case "references":
-        model.references = message.references;
-        model.tell("references");
-        break;
-      case "views":
-        model.views = message.views;
-        model.tell("views");
-        break;
-      case "cameras":
-        model.cameras = message.cameras;
-        model.tell("cameras");
-        break;
-      case "picture":
-        model.setPicture(message.name, message.data as Uint8Array<ArrayBuffer>);
-        model.tell("pictures");
-        break;
-      case "rendered":
-        this.render.show(message);
-        break;
-      case "saved":
-        this.notices.show(`${message.name} is saved`);
-        break;
-      case "followed":
-        model.followed = message;
-        model.tell("followed");
-        break;
-      case "pointer":
-        this.pointer.show(message.at && new Vector3(...message.at));
-        break;
-      case "share_page": {
-        const size = `${(message.text.length / 1e6).toFixed(1)} MB`;
-        const fewer = message.hairs < message.of ? `, with ${message.hairs} of its ${message.of} hairs` : "";
-        keep(new Blob([message.text as BlobPart], { type: "text/html" }), message.name);
-        this.notices.show(`${message.name} is saved: ${size}${fewer}`);
-        break;
-      }
-      case "notice":
-        this.notices.show(message.message);
-        break;
-      case "trouble":
-        this.notices.show(model.words(message.message), "bad");
-        if (message.message.startsWith("render:") || message.message.startsWith("picture:")) this.render.fail();
-        model.tell("document"); // controls go back to what holds
-        break;
+    model.hear("body", (message) => viewer.stage.setBody(message));
+    model.hear("hairs", (message) => viewer.stage.setHairs(message));
+    model.hear("colors", (message) => viewer.stage.setColors(message));
+    model.hear("locks", (message) => viewer.setLocks(message));
+    model.hear("guides", (message) => {
+      model.guides = message;
+      viewer.guides.set(message);
+      model.tell("guides");
+      viewer.invalidate();
+    });
+  }
+
+  /** The server is there, for the first time or again. */
+  private welcome(message: Welcome): void {
+    const { model, viewer } = this;
+    model.link?.met(message.heard);
+    if (model.welcome && (model.welcome.name !== message.name || model.welcome.mode !== message.mode)) this.reset();
+    else if (this.session && this.session !== message.session) {
+      model.numbers = null;
+      model.problems = [];
+      for (const side of model.others) viewer.compare(side, false); // the new server compares nothing
+      model.compared = {};
+      model.tell("compared");
+      if (!message.recovered) this.giveBack();
     }
+    this.kept = {};
+    this.session = message.session;
+    model.welcome = message;
+    if (message.mode === "shot" && !model.documents.shot) model.choose("shot", ["strands"]);
+    model.tell("welcome");
+    this.timeline.found();
+  }
+
+  private sharePage({ text, name, hairs, of }: SharePage): void {
+    keep(new Blob([text as BlobPart], { type: "text/html" }), name);
+    const fewer = hairs < of ? `, with ${hairs} of its ${of} hairs` : "";
+    this.notices.show(`${name} is saved: ${(text.length / 1e6).toFixed(1)} MB${fewer}`);
   }
 
   private endComparison(): void {

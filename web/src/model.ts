@@ -7,6 +7,7 @@ import type {
   Document,
   Followed,
   FromPage,
+  FromServer,
   Guides,
   Json,
   LockMotion,
@@ -31,6 +32,8 @@ import type { OverlayName } from "./view/overlays";
 
 export type File = "recipe" | "shot";
 export type Place = (string | number)[];
+type Kind = FromServer["kind"];
+type Of<K extends Kind> = Extract<FromServer, { kind: K }>;
 type Topic =
   | "welcome"
   | "document"
@@ -103,6 +106,78 @@ export class Model {
   link: Link | null = null;
   private gesture = Date.now() % 1e9;
   private readonly listeners = new Map<Topic, (() => void)[]>();
+  private readonly hearers = new Map<Kind, ((message: never) => void)[]>();
+
+  constructor() {
+    this.hear("heard", ({ count }) => this.link?.noteHeard(count));
+    this.hear("document", (message) => {
+      this.documents[message.file] = message;
+      this.tell("document");
+    });
+    this.hear("role", (message) => {
+      this.role = message;
+      this.tell("role");
+      if (this.settled || this.stuck) this.link?.sayAgain();
+    });
+    this.hear("files", ({ names }) => {
+      this.files = names;
+      this.tell("files");
+    });
+    this.hear("numbers", (message) => {
+      this.numbers = message;
+      this.tell("numbers");
+      if (this.settled) this.link?.sayAgain();
+    });
+    this.hear("problems", ({ problems }) => {
+      this.problems = problems;
+      this.tell("problems");
+      this.tell("document");
+      if (this.stuck) this.link?.sayAgain(); // what was not heard may be what makes the groom possible
+    });
+    this.hear("progress", (message) => {
+      this.progress = message.stage ? message : null;
+      this.tell("progress");
+    });
+    this.hear("picture", ({ name, data }) => {
+      this.setPicture(name, data as Uint8Array<ArrayBuffer>);
+      this.tell("pictures");
+    });
+    this.hear("trouble", () => this.tell("document")); // controls go back to what holds
+    this.keepWhole("painted", "names", "measured", "timeline", "followed");
+    this.keepPart("presets", "snapshots", "notes", "references", "views", "cameras");
+    this.hear("lock_motion", (message) => {
+      this.lockMotion = message;
+      this.tell("lock_motion");
+    });
+  }
+
+  /** Calls a listener with each message of a kind that the server sends, after those that asked before. */
+  hear<K extends Kind>(kind: K, listener: (message: Of<K>) => void): void {
+    this.hearers.set(kind, [...(this.hearers.get(kind) ?? []), listener]);
+  }
+
+  /** Hands a message of the server to those that hear its kind. */
+  take(message: FromServer): void {
+    for (const listener of this.hearers.get(message.kind) ?? []) listener(message as never);
+  }
+
+  /** Keeps messages as they come, under the names of their kinds. */
+  private keepWhole(...kinds: ("painted" | "names" | "measured" | "timeline" | "followed")[]): void {
+    for (const kind of kinds)
+      this.hear(kind, (message) => {
+        Object.assign(this, { [kind]: message });
+        this.tell(kind);
+      });
+  }
+
+  /** Keeps of messages what has the name of their kind. */
+  private keepPart(...kinds: ("presets" | "snapshots" | "notes" | "references" | "views" | "cameras")[]): void {
+    for (const kind of kinds)
+      this.hear(kind, (message) => {
+        Object.assign(this, { [kind]: (message as unknown as Record<string, unknown>)[kind] });
+        this.tell(kind);
+      });
+  }
 
   on(topic: Topic, listener: () => void): void {
     this.listeners.set(topic, [...(this.listeners.get(topic) ?? []), listener]);

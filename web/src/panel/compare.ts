@@ -62,6 +62,12 @@ export class CompareBar {
     private readonly viewer: Viewer,
     private readonly end: () => void,
   ) {
+    model.hear("compared", (message) => {
+      if (message.name) model.compared[message.side] = message;
+      else delete model.compared[message.side];
+      if (message.side !== "a") viewer.compare(message.side, message.name !== "");
+      model.tell("compared");
+    });
     for (const [name, label] of Object.entries(MODES)) this.mode.append(h("option", { value: name }, label));
     this.mode.addEventListener("change", () => this.arrange(this.mode.value as Arrangement));
     this.more.addEventListener("change", () => {

@@ -41,6 +41,7 @@ export class LockTool {
     private readonly model: Model,
     private readonly viewer: Viewer,
   ) {
+    model.hear("locks", ({ side }) => side === "a" && this.arrived());
     this.handles.classList.add("handles");
     const close = h("button", { type: "button", class: "quiet", onclick: () => this.choose(-1) }, "Done");
     this.element.append(
@@ -192,7 +193,7 @@ export class LockTool {
   }
 
   /** Locks have come: the chosen one may be another row, or gone. */
-  arrived(): void {
+  private arrived(): void {
     const count = this.viewer.hair.a.locks?.ids.length ?? 0;
     this.rows = this.rows.filter((row) => row < count);
     this.mark();

@@ -29,6 +29,7 @@ export class PresenterPointer {
     const canvas = viewer.canvas;
     canvas.addEventListener("pointermove", (event) => this.moved(event));
     canvas.addEventListener("pointerleave", () => this.moved(null));
+    model.hear("pointer", ({ at }) => this.show(at && new Vector3(...at)));
     model.on("role", () => this.show(this.at));
   }
 

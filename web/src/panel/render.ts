@@ -49,6 +49,10 @@ export class RenderPanel {
     this.element = h("section", { class: "render", hidden: true, "aria-label": "Render" }, this.frame, this.line.element, bar);
     viewbar.element.append(iconButton("render", "Render (R)", () => this.start()));
     bindKey({ section: "View", keys: "R", does: "render the picture, path-traced", on: plainKey("r"), run: () => this.start() });
+    model.hear("rendered", (message) => this.show(message));
+    model.hear("trouble", ({ message }) => {
+      if (message.startsWith("render:") || message.startsWith("picture:")) this.fail();
+    });
     model.on("look", () => this.followLook());
     model.on("compared", () => viewer.compared && this.close());
     model.on("numbers", () => this.tell());
@@ -72,7 +76,7 @@ export class RenderPanel {
   }
 
   /** A step of a render has arrived. */
-  show(message: Rendered): void {
+  private show(message: Rendered): void {
     if (!this.request || message.number !== this.request.number) return;
     const png = new Blob([message.png as Uint8Array<ArrayBuffer>], { type: "image/png" });
     this.picture = { png, samples: message.samples, request: this.request };
@@ -83,7 +87,7 @@ export class RenderPanel {
   }
 
   /** The render cannot be made. */
-  fail(): void {
+  private fail(): void {
     if (this.request && !this.done && !this.picture) this.close();
   }
 

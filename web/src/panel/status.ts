@@ -78,6 +78,12 @@ export class Notices {
   readonly element = h("div", { class: "notices", role: "status", "aria-live": "polite" });
   private readonly shown = new Map<string, { notice: HTMLElement; timer: number }>();
 
+  constructor(model: Model) {
+    model.hear("saved", ({ name }) => this.show(`${name} is saved`));
+    model.hear("notice", ({ message }) => this.show(message));
+    model.hear("trouble", ({ message }) => this.show(model.words(message), "bad"));
+  }
+
   /** Shows a message; the same message again only renews it. */
   show(text: string, kind: "good" | "bad" = "good"): void {
     const known = this.shown.get(text);

@@ -49,6 +49,10 @@ export class TimelineBar {
     private readonly seen: (frame: Frame) => void,
   ) {
     this.swing = new SwingChart(model, (frame) => this.goTo(frame));
+    model.hear("frame", (frame) => this.add(frame));
+    model.hear("hairs", ({ side }) => this.displaced(side));
+    model.hear("locks", ({ side }) => this.displaced(side));
+    model.on("measured", () => model.overlay && this.overlay());
     model.on("overlay", () => this.overlay());
     this.against.addEventListener("change", () => this.compare(this.against.value));
     this.slider.addEventListener("input", () => this.goTo(Number(this.slider.value)));
@@ -114,7 +118,7 @@ export class TimelineBar {
   }
 
   /** A frame has come. */
-  add(frame: Frame): void {
+  private add(frame: Frame): void {
     const { layer } = frame;
     this.frames[layer].set(frame.frame, frame);
     this.asked[layer].delete(frame.frame);
@@ -260,7 +264,7 @@ export class TimelineBar {
   }
 
   /** Hair has gone from where a frame had put it. */
-  displaced(side: Side): void {
+  private displaced(side: Side): void {
     if (side === "c" || side === "d") return;
     delete this.drawn[side === "a" ? "shot" : "against"];
   }
@@ -323,7 +327,7 @@ export class TimelineBar {
   }
 
   /** Another overlay is wanted, or what it shows has come. */
-  overlay(): void {
+  private overlay(): void {
     this.tint("shot");
     this.tint("against");
     this.viewer.invalidate();
