@@ -30,9 +30,8 @@ cpp_tests() {
 # Each worker begins with half of the files in a row, so that what a file shares is made once.
 pytests() { OMP_NUM_THREADS=1 $bin/python -m pytest -n 2 --dist worksteal --durations 8 "$@"; }
 
-# All at the same priority: what has a lower one would end last, on one processor. A browser often waits, so others run
-# while its tests do.
-step "C++ tests" cpp_tests &
+step "C++ tests" cpp_tests # alone: their threads wait for one another awake
+# Beside the Python tests: at a lower priority they would end last, each on one processor.
 step "lints" tools/lint.sh &
 step "documents" tools/docs.sh &
 step "counts of instructions and calls" $bin/python -m pytest -rs tests/counts & # with valgrind, where there is one

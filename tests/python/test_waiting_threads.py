@@ -27,7 +27,7 @@ print("libgomp" in open("/proc/self/maps").read())
 @pytest.mark.parametrize(
     ("given", "expected"),
     [
-        ({}, "1000 None False"),
+        ({}, "5000 None False"),
         ({"GOMP_SPINCOUNT": "7"}, "7 None False"),
         ({"OMP_WAIT_POLICY": "active"}, "None active False"),
     ],
