@@ -1,5 +1,5 @@
 #!/bin/bash
-# Everything that must hold, several steps at a time; what fails is shown, and the rest still runs.
+# Everything that must hold, one step after the other; what fails is shown, and the rest still runs.
 set -u
 cd "$(dirname "$0")/.."
 bin=.venv/bin
@@ -30,13 +30,13 @@ cpp_tests() {
 # Each worker begins with half of the files in a row, so that what a file shares is made once.
 pytests() { OMP_NUM_THREADS=1 $bin/python -m pytest -n 2 --dist worksteal --durations 8 "$@"; }
 
-step "C++ tests" cpp_tests # alone: their threads wait for one another awake
+step "C++ tests" cpp_tests
 # Beside the Python tests: at a lower priority they would end last, each on one processor.
 step "lints" tools/lint.sh &
 step "documents" tools/docs.sh &
 step "counts of instructions and calls" $bin/python -m pytest -rs tests/counts & # with valgrind, where there is one
 step "Python tests" pytests tests/python
-step "physics tests" pytests tests/physics &
+step "physics tests" pytests tests/physics
 step "browser tests" pytests -rs tests/browser # in headless Chromium; where there is none they are skipped, and say so
 wait
 
