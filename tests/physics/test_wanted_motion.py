@@ -183,6 +183,14 @@ def test_words_that_the_steps_cannot_show_are_refused_with_steps_that_can(words)
     assert shown(shot(better), groom("3B")).bounce[0] == pytest.approx(11.0, rel=0.05)
 
 
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+def test_locks_that_air_keeps_from_swinging_are_left_without_a_word():
+    """Their own swing is 0, and so is what is asked as a factor on it."""
+    scene = shot(f"{EQUILIBRIUM}[strands]\ndrag = 0.1\n[motion]\nswing = {{ value = 1.3, of_hair = true }}\n")
+    locks = with_words(scene, groom("2C", "3B")).locks
+    assert (locks.curve["asked_swing"] == 0.0).all()
+
+
 def test_locks_without_a_word_of_hair_get_a_rest_shape():
     """Straight hair that stands falls over by its own stiffness, so that it has no swing to be a factor on."""
     standing = groom("2C", "3B")

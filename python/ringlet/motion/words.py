@@ -75,7 +75,7 @@ class HangingLocks:
         It is the logarithm of the square of their frequency relative to that of the word, or of the sag of the word
         relative to theirs. NaN where a lock does not stay in place, infinite where it does not sag.
         """
-        with np.errstate(divide="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore"):
             if "sag" in wanted:
                 return np.where(self.sag > 0.0, np.log(wanted["sag"]) - np.log(np.maximum(self.sag, 0.0)), np.inf)
             if "swing" in wanted:
