@@ -20,8 +20,8 @@ import ringlet
 
 EXAMPLE, IMAGES = (Path(__file__).parents[1] / name for name in ("examples/child", "docs/images"))
 WIDTH, HEIGHT = 240, 290  # of a movie alone [pixels]
-SMALL = 160, 190  # of one among several [pixels]
-SAMPLES, SHARE = 3, 0.06  # light paths per pixel, and the part of the hairs
+SMALL = 220, 260  # of one among several [pixels]
+SAMPLES, SHARE = 12, 0.06  # light paths per pixel, and the part of the hairs
 LINE = 26  # of the title [pixels]
 HOP, SHOWN = (30, 53), (36, 53)  # frames with the hop of the clip, and those from its take-off on
 

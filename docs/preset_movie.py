@@ -14,7 +14,7 @@ from ringlet.shot.motion import WantedMotion
 import ringlet
 
 COLUMNS = 4
-SHARE = 0.03  # part of the hairs
+SHARE = 0.06  # part of the hairs
 FLIGHT = 41  # the frame of the picture: hair floats
 # Recipes of the examples, with fewer and thicker locks: what changes in tables of each.
 GROOMS: dict[str, tuple[str, dict[str, dict[str, Any]]]] = {
