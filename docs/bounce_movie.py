@@ -32,7 +32,6 @@ def play(
     title: str,
     frames: tuple[int, int] | None = SHOWN,
     size: tuple[int, int] = SMALL,
-    share: float = SHARE,
 ) -> list[Image.Image]:
     """Simulates a groom with a rest shape of its own and renders frames of it, each with the title above."""
     pages = []
@@ -43,7 +42,7 @@ def play(
         ringlet.write_groom(groom, groom_file)
         ringlet.write_loft(ringlet.loft(shot, groom), shot, shot.rest.file)
         ringlet.write_simulation(shot, groom, groom_file, cache_file, checkpoints=folder / "checkpoints")
-        ringlet.write_hairs(groom_file, hair_file, cache=cache_file, frames=frames, fraction=share, wider=True)
+        ringlet.write_hairs(groom_file, hair_file, cache=cache_file, frames=frames, fraction=SHARE, wider=True)
         ringlet.write_movie(hair_file, folder / "frames", width=size[0], height=size[1], samples=SAMPLES)
         for picture in sorted((folder / "frames").glob("*.png")):
             pages.append(page := Image.new("RGB", (size[0], size[1] + LINE), "#15191d"))

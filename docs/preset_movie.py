@@ -14,7 +14,6 @@ from ringlet.shot.motion import WantedMotion
 import ringlet
 
 COLUMNS = 4
-SHARE = 0.06  # part of the hairs
 FLIGHT = 41  # the frame of the picture: hair floats
 # Recipes of the examples, with fewer and thicker locks: what changes in tables of each.
 GROOMS: dict[str, tuple[str, dict[str, dict[str, Any]]]] = {
@@ -44,7 +43,7 @@ def main() -> None:
     for preset in GROOMS:
         motion = WantedMotion.model_validate({"preset": preset})
         hop = shot.model_copy(update={"motion": motion, "frames": HOP})
-        movies.append(play(hop, groom_of(preset), preset.replace("_", " "), share=SHARE))
+        movies.append(play(hop, groom_of(preset), preset.replace("_", " ")))
     save(movies, IMAGES / "presets.webp", COLUMNS)
     flight = side_by_side([pages[FLIGHT - SHOWN[0]] for pages in movies], COLUMNS)
     flight.save(IMAGES / "presets_flight.webp", quality=80)

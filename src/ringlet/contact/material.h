@@ -20,8 +20,8 @@ struct ContactMaterial {
     double friction_of(int vertex, int other) const { return friction[material[vertex] * materials + material[other]]; }
 };
 
-// The stiffness of a pair: that of the softer side [N/m]. A prescribed vertex beside a free one of the same edge is as soft as
-// that: else the free one would be pushed without bound.
+// The stiffness of a pair [N/m]: the lower one of its two primitives. A prescribed vertex of an edge has the stiffness of the
+// free one, which would otherwise be pushed without bound.
 inline double pair_stiffness(const CollisionMesh &mesh, const Stencil &stencil, const ContactMaterial &material) {
     const bool of_strands = std::max(stencil.vertex[0], stencil.vertex[3]) < int(mesh.along_curve.size());
     const std::vector<double> &stiffness = of_strands ? material.stiffness : material.firm_stiffness;

@@ -1,5 +1,6 @@
 // All keys in one place: what they do, where they act, and the list of them.
 
+import "./lined_table.css";
 import "./keys.css";
 import { h } from "../dom";
 import { openDialog } from "./dialog";

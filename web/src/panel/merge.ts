@@ -1,5 +1,6 @@
 // A conflict with the version of a file that another program wrote: each setting is seen, and chosen.
 
+import "./lined_table.css";
 import "./merge.css";
 import { h } from "../dom";
 import type { Model } from "../model";

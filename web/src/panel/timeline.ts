@@ -1,6 +1,7 @@
 // The frames of a shot or a cache: run, hold, go on, run again from a frame, scrub, and compare with another cache.
 // They are with the server: here are those about the one that is seen, as many as fit. A chart below shows their swing.
 
+import "./floating_bar.css";
 import "./timeline.css";
 import { h, iconButton } from "../dom";
 import type { Model } from "../model";

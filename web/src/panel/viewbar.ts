@@ -1,5 +1,6 @@
 // What one does with the picture: light, colour, where from, and pictures to keep.
 
+import "./floating_bar.css";
 import "./viewbar.css";
 import { h, iconButton } from "../dom";
 import type { Model } from "../model";
