@@ -36,6 +36,8 @@ struct CollisionScene {
         mesh.radius.push_back(radius);
         mesh.moves.push_back(moves);
         mesh.object.push_back(object);
+        if (object >= int(mesh.objects.size())) mesh.objects.resize(object + 1, {int(mesh.object.size()) - 1, 0});
+        mesh.objects[object].end = int(mesh.object.size());
         mesh.anchor.push_back(anchor);
         mesh.points.push_back(static_cast<int>(start.size()) - 1);
         return mesh.points.back();
@@ -103,7 +105,8 @@ inline Pairs impacts(const CollisionMesh &mesh, const MoveCandidates &pairs, con
 
 inline Pairs contacts(MoveCandidates &pairs, const std::vector<Vec3> &positions) {
     Pairs found;
-    for (const ContactPair &touch : pairs.contact_pairs(positions)) found.insert(name(touch));
+    const std::vector<unsigned char> all(pairs.candidates().mesh().objects.size(), 1);
+    for (const ContactPair &touch : pairs.contact_pairs(positions, all)) found.insert(name(touch));
     return found;
 }
 

@@ -145,6 +145,8 @@ struct SpringScene {
         return x;
     }
 
+    std::vector<unsigned char> all_objects() const { return std::vector<unsigned char>(table.objects, 1); }
+
     // The pairs that touch at the positions.
     std::vector<ContactPair> touching() {
         configuration->candidates.clear();

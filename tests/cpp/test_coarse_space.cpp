@@ -25,7 +25,7 @@ SpringScene stacks(std::initializer_list<int> counts) {
     scene.finish();
     scene.begin(0.02, {0.5, 0.2, -9.81});
     const std::vector<Vec3> &now = scene.configuration->positions;
-    scene.objective->find_contacts(scene.touching(), now, now);
+    scene.objective->find_contacts(scene.touching(), scene.all_objects(), now, now);
     return scene;
 }
 

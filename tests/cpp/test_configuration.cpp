@@ -57,7 +57,7 @@ BOOST_AUTO_TEST_CASE(recorded_positions_begin_with_the_frame_of_the_step_and_fol
 BOOST_AUTO_TEST_CASE(a_limited_path_leads_where_its_move_ends) {
     SpringScene scene = above_a_triangle();
     scene.begin(0.01);
-    scene.objective->find_contacts({}, scene.positions, scene.positions);
+    scene.objective->find_contacts({}, scene.all_objects(), scene.positions, scene.positions);
     const AlignedVector x = scene.unknowns();
     SearchPath path(scene.blocks->size());
     path.straight[2] = path.straight[5] = -0.05; // both masses down
@@ -83,7 +83,7 @@ BOOST_AUTO_TEST_CASE(a_limited_path_leads_where_its_move_ends) {
 BOOST_AUTO_TEST_CASE(a_line_search_shortens_a_path_whose_energy_rises) {
     SpringScene scene = above_a_triangle();
     scene.begin(0.01);
-    scene.objective->find_contacts({}, scene.positions, scene.positions);
+    scene.objective->find_contacts({}, scene.all_objects(), scene.positions, scene.positions);
     const AlignedVector x = scene.unknowns();
     scene.masses[0]->anchors()[0].z() += 1e-3;
     scene.system->assemble(x, {});

@@ -117,6 +117,7 @@ BOOST_AUTO_TEST_CASE(edges_that_touch_at_prescribed_ends_are_no_stiffer_than_the
     mesh.radius.assign(4, 1e-3);
     mesh.moves = {0, 1, 0, 1};
     mesh.object = {0, 0, 1, 1};
+    mesh.objects = {{0, 2}, {2, 4}};
     mesh.anchor.assign(4, -1);
     const std::vector<double> stiffness = {prescribed, 2.0, prescribed, 3.0};
     const ContactMaterial material{stiffness, stiffness, {0, 0, 0, 0}, {0.3}, 1, 1e-5};
@@ -128,7 +129,8 @@ BOOST_AUTO_TEST_CASE(edges_that_touch_at_prescribed_ends_are_no_stiffer_than_the
         MoveCandidates pairs(candidates);
         pairs.begin({now, now});
         ContactSet contacts;
-        contacts.find(mesh, material, pairs.contact_pairs(now), now, now);
+        const std::vector<unsigned char> all(2, 1);
+        contacts.find(mesh, material, pairs.contact_pairs(now, all), all, now, now);
         BOOST_REQUIRE(contacts.contacts().size() == 1u);
         BOOST_TEST(contacts.contacts()[0].barrier.stiffness == 2.0, boost::test_tools::tolerance(1e-12));
     }

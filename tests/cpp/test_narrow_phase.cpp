@@ -58,4 +58,37 @@ BOOST_AUTO_TEST_CASE(reachable_pairs_hold_all_contacts_of_marked_objects_at_any_
     }
 }
 
+// Most objects stay: their pairs are looked at no more, and yet known.
+BOOST_AUTO_TEST_CASE(contact_pairs_are_complete_where_few_objects_move) {
+    CollisionScene scene(4, 0.05);
+    const CollisionMesh &mesh = scene.mesh;
+    std::vector<Vec3> now = scene.start, next = scene.start;
+    Candidates candidates(mesh);
+    candidates.enclose({now, now}, {.margin = 0.05, .max_path = 0.1});
+    MoveCandidates pairs(candidates);
+    pairs.begin({now, now});
+    size_t checked = 0;
+    for (int mover = 2; mover < 32; ++mover) {
+        std::vector<unsigned char> marked(32, 0);
+        marked[mover] = 1;
+        for (size_t v = 0; v < now.size(); ++v)
+            if (mesh.object[v] == mover && mesh.moves[v]) next[v] = now[v] + Vec3(0.003, 0.004, -0.003);
+        const Move move{now, next};
+        candidates.enclose(move, {.margin = 0.05, .max_path = 0.1});
+        pairs.begin(move);
+        pairs.commit(now, next);
+        now = next;
+        Pairs expected, found;
+        for (const auto &[edge_edge, i, j] : all_contacts(mesh, now)) {
+            const int first = edge_edge ? mesh.edges[i][0] : i, second = edge_edge ? mesh.edges[j][0] : mesh.triangles[j][0];
+            if (marked[mesh.object[first]] || marked[mesh.object[second]]) expected.insert({edge_edge, i, j});
+        }
+        for (const ContactPair &pair : pairs.contact_pairs(now, marked)) found.insert(name(pair));
+        checked += expected.size();
+        BOOST_TEST((found == expected));
+    }
+    BOOST_TEST(checked > 20);
+    BOOST_TEST((contacts(pairs, now) == all_contacts(mesh, now)));
+}
+
 BOOST_AUTO_TEST_SUITE_END()

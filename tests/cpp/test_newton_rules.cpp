@@ -15,7 +15,7 @@ SpringScene bars() {
     scene.finish();
     scene.begin(0.02);
     const std::vector<Vec3> &now = scene.configuration->positions;
-    scene.objective->find_contacts(scene.touching(), now, now);
+    scene.objective->find_contacts(scene.touching(), scene.all_objects(), now, now);
     return scene;
 }
 

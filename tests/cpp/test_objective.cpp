@@ -23,7 +23,7 @@ SpringScene crossing_bars(double friction = 0.3) {
 
 void find_contacts(SpringScene &scene, double damping = 0.0) {
     const std::vector<Vec3> &now = scene.configuration->positions;
-    scene.objective->find_contacts(scene.touching(), now, now, damping);
+    scene.objective->find_contacts(scene.touching(), scene.all_objects(), now, now, damping);
 }
 
 // Begins a step; the path along its first Newton direction.
@@ -57,6 +57,25 @@ BOOST_AUTO_TEST_CASE(clusters_are_the_objects_that_contacts_join) {
     BOOST_TEST(!scene.objective->is_alone(1));
     BOOST_TEST(scene.objective->is_alone(3));
     BOOST_TEST(scene.objective->couplings.count() == 6);
+}
+
+BOOST_AUTO_TEST_CASE(what_touches_is_known_where_contacts_are_found_for_some) {
+    SpringScene scene = crossing_bars();
+    scene.begin(0.01);
+    find_contacts(scene);
+    Objective &objective = *scene.objective;
+    for (int k = 0; k < 2; ++k) objective.contacts.set_lagged_force(k, 1e-2 * (k + 1));
+    const std::vector<Vec3> &now = scene.configuration->positions;
+    const std::vector<unsigned char> first = {1, 0, 0, 0};
+    scene.blocks->activate(first);
+    objective.find_contacts(scene.configuration->contact_pairs(first), first, now, now);
+    BOOST_TEST(objective.contacts.contacts().size() == 1u);
+    BOOST_TEST(objective.contacts.contacts()[0].friction.normal_force == 1e-2);
+    BOOST_TEST((objective.with_touched({0, 0, 1, 0}) == std::vector<unsigned char>{0, 1, 1, 0}));
+    scene.blocks->activate_all();
+    find_contacts(scene);
+    BOOST_TEST(objective.contacts.contacts().size() == 2u);
+    BOOST_TEST(objective.contacts.contacts()[1].friction.normal_force == 2e-2);
 }
 
 BOOST_AUTO_TEST_CASE(the_gradient_is_the_derivative_of_the_energy) {

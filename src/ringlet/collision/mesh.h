@@ -98,6 +98,12 @@ template <size_t N> bool any_of(View<unsigned char> marked, const std::array<int
     return std::any_of(primitive.begin(), primitive.end(), [&](int v) { return marked[v] != 0; });
 }
 
+// Whether one of two objects is marked; those beyond the marks are not, nor is −1: none.
+inline bool any_marked(const std::array<int, 2> &objects, View<unsigned char> marked) {
+    const auto is_marked = [&](int object) { return size_t(object) < marked.size() && marked[object] != 0; };
+    return is_marked(objects[0]) || is_marked(objects[1]);
+}
+
 // Whether a vertex of one primitive is anchored to the object of the other.
 template <size_t N, size_t M>
 bool anchored(const CollisionMesh &mesh, const std::array<int, N> &a, const std::array<int, M> &b) {

@@ -22,10 +22,14 @@ public:
         : boxes_(boxes), motion_(motion), kept_(kept) {}
     ~PairCuller() { cull_edges(); }
 
+    void keep(Pair &pair) {
+        cull_edges();
+        kept_.push_back(&pair);
+    }
+
     void add(Pair &pair) {
         if (!pair.edge_edge) {
-            cull_edges();
-            if (boxes_.with_boxes(pair, motion_ == Motion::straight ? may_overlap : paths_overlap)) kept_.push_back(&pair);
+            if (boxes_.with_boxes(pair, motion_ == Motion::straight ? may_overlap : paths_overlap)) keep(pair);
             return;
         }
         pairs_[count_++] = &pair;
@@ -65,19 +69,33 @@ void MoveCandidates::begin(const Move &move) {
     any_escaped_ = std::count(escaped_.begin(), escaped_.end(), 1) > 0;
     paths_.set_changed(all_);
     paths_.measure(move, all_, escaped_);
+    find_moving();
     boxes_.fit(move, bounds.boxes().origin());
     transient_ = any_escaped_ ? candidates_.find_escaped(boxes_, escaped_, escaped_) : std::vector<CandidatePair>();
     std::vector<CandidatePair> &pairs = candidates_.pairs();
     reachable_ = collect_ranges<CandidatePair *>(int(pairs.size()), [&](int begin, int end, auto &kept) {
         PairCuller<CandidatePair> culler(boxes_, Motion::in_triangles, kept);
-        for (int k = begin; k < end; ++k)
-            if (may_contact(pairs[k]) && !(any_escaped_ && paths_.escaped(pairs[k]))) culler.add(pairs[k]);
+        for (int k = begin; k < end; ++k) {
+            if (at_rest(pairs[k])) {
+                if (pairs[k].min_gap < pairs[k].d_hat) culler.keep(pairs[k]);
+            } else if (may_contact(pairs[k]) && !(any_escaped_ && paths_.escaped(pairs[k]))) {
+                culler.add(pairs[k]);
+            }
+        }
     });
     path_candidates_ = collect<CandidatePair *>(int(reachable_.size()), [&](int k, auto &kept) {
-        if (may_impact(*reachable_[k])) kept.push_back(reachable_[k]);
+        if (!at_rest(*reachable_[k]) && may_impact(*reachable_[k])) kept.push_back(reachable_[k]);
     });
     impact_candidates_ = cull_straight([](const CandidatePair &) { return true; });
     add_transient_candidates();
+}
+
+void MoveCandidates::find_moving() {
+    moving_.assign(mesh_.objects.size(), 0);
+#pragma omp parallel for schedule(static)
+    for (int object = 0; object < int(moving_.size()); ++object)
+        for (int v = mesh_.objects[object].first; v < mesh_.objects[object].end && !moving_[object]; ++v)
+            moving_[object] = paths_.moves(v);
 }
 
 MeshSubset MoveCandidates::refit(const Move &move, View<unsigned char> changed) {
@@ -120,20 +138,21 @@ void MoveCandidates::commit(View<Vec3> start, View<Vec3> end) {
 #pragma omp parallel for schedule(static)
         for (int k = 0; k < int(pairs->size()); ++k) {
             CandidatePair &pair = (*pairs)[k];
-            if (pair.min_gap <= 0.0 || paths_.length(pair) == 0.0) continue;
+            if (pair.min_gap <= 0.0 || at_rest(pair) || paths_.length(pair) == 0.0) continue;
             pair.min_gap -=
                 with_vertices(mesh_, pair, [&](const auto &a, const auto &b) { return max_approach(a, b, start, end); });
         }
     paths_.clear();
 }
 
-std::vector<ContactPair> MoveCandidates::contact_pairs(View<Vec3> positions) {
+std::vector<ContactPair> MoveCandidates::contact_pairs(View<Vec3> positions, View<unsigned char> objects) {
     const auto raise = [](CandidatePair &pair, double gap) { pair.min_gap = gap; };
     const auto find = [&](size_t count, const auto &pair_of) {
         return collect_ranges<ContactPair>(int(count), [&](int begin, int end, std::vector<ContactPair> &found) {
             NarrowPhase<CandidatePair, decltype(raise)> narrow_phase(mesh_, positions, raise, found);
             for (int k = begin; k < end; ++k)
-                if (CandidatePair &pair = pair_of(k); may_contact(pair)) narrow_phase.add(pair);
+                if (CandidatePair &pair = pair_of(k); any_marked(pair.object, objects) && may_contact(pair))
+                    narrow_phase.add(pair);
         });
     };
     std::vector<ContactPair> all = find(reachable_.size(), [&](int k) -> CandidatePair & { return *reachable_[k]; });
@@ -143,7 +162,7 @@ std::vector<ContactPair> MoveCandidates::contact_pairs(View<Vec3> positions) {
 
 ReachablePairs MoveCandidates::reachable_pairs(View<unsigned char> objects) const {
     const auto consider = [&](const CandidatePair &pair, ReachablePairs &found) {
-        if (may_contact(pair) && any_marked(pair, objects))
+        if (any_marked(pair.object, objects) && may_contact(pair))
             found.push_back({pair, pair.object, pair.min_gap - pair.d_hat, paths_.lengths(pair)});
     };
     ReachablePairs all =

@@ -60,6 +60,8 @@ public:
         measure(subset.triangles, mesh_.triangles, triangles_);
     }
 
+    bool moves(int vertex) const { return vertices_[vertex].length > 0.0f; }
+
     // Upper bounds on the path lengths of a pair [m], and on how much nearer it can come.
     std::array<double, 2> lengths(const PrimitivePair &pair) const { return {first(pair).length, second(pair).length}; }
     double length(const PrimitivePair &pair) const { return double(first(pair).length) + second(pair).length; }
@@ -111,9 +113,9 @@ public:
     const std::vector<CandidatePair> &transient_pairs() const { return transient_; }
     bool any_escaped() const { return any_escaped_; }
 
-    // Pairs nearer than their activation distance where the last move was begun or committed, in order. Raises the lower bounds
-    // that it measures.
-    std::vector<ContactPair> contact_pairs(View<Vec3> positions);
+    // Pairs with a marked object that are nearer than their activation distance where the last move was begun or committed, in
+    // order. Raises the lower bounds that it measures.
+    std::vector<ContactPair> contact_pairs(View<Vec3> positions, View<unsigned char> objects);
     // Pairs with a marked object that may come into contact anywhere on the move, in order.
     ReachablePairs reachable_pairs(View<unsigned char> objects) const;
 
@@ -121,6 +123,8 @@ public:
 
 private:
     MeshSubset refit(const Move &move, View<unsigned char> changed);
+    void find_moving();
+    bool at_rest(const CandidatePair &pair) const { return !moving_[pair.object[0]] && !moving_[pair.object[1]]; }
     template <class Filter> std::vector<CandidatePair *> cull_straight(const Filter &filter) const;
     void add_transient_candidates();
     bool may_contact(const CandidatePair &pair) const { return pair.min_gap - paths_.length(pair) < pair.d_hat; }
@@ -133,10 +137,11 @@ private:
     const MeshSubset all_;
     std::vector<unsigned char> escaped_; // vertices
     bool any_escaped_ = false;
-    SweptBoxes boxes_; // of the move
+    std::vector<unsigned char> moving_; // objects
+    SweptBoxes boxes_;                  // of the move
     PrimitivePaths paths_;
     std::vector<CandidatePair> transient_;
-    // Reachable: pairs of vertices in their bounds that may come into contact.
+    // Reachable: pairs of vertices in their bounds that may come into contact. The others are of moving objects.
     std::vector<CandidatePair *> reachable_, path_candidates_, impact_candidates_;
 };
 

@@ -79,12 +79,6 @@ struct ReachablePair : PrimitivePair {
 
 using ReachablePairs = std::vector<ReachablePair>;
 
-// Whether one of a pair's objects is marked; those beyond the end are not.
-template <class Pair> bool any_marked(const Pair &pair, View<unsigned char> objects) {
-    const auto marked = [&](int object) { return size_t(object) < objects.size() && objects[object] != 0; };
-    return marked(pair.object[0]) || marked(pair.object[1]);
-}
-
 // The contact pairs with a marked object at `positions`, where each object has made at most the given fraction of its path.
 // Objects beyond these are unmarked and at rest.
 inline std::vector<ContactPair> contact_pairs(const CollisionMesh &mesh, const ReachablePairs &pairs, View<Vec3> positions,
@@ -96,7 +90,7 @@ inline std::vector<ContactPair> contact_pairs(const CollisionMesh &mesh, const R
     return collect_ranges<ContactPair>(int(pairs.size()), [&](int begin, int end, std::vector<ContactPair> &found) {
         NarrowPhase<const ReachablePair, decltype(ignore)> narrow_phase(mesh, positions, ignore, found);
         for (int k = begin; k < end; ++k)
-            if (any_marked(pairs[k], objects) && pairs[k].slack < path(pairs[k], 0) + path(pairs[k], 1))
+            if (any_marked(pairs[k].object, objects) && pairs[k].slack < path(pairs[k], 0) + path(pairs[k], 1))
                 narrow_phase.add(pairs[k]);
     });
 }

@@ -84,7 +84,7 @@ void ContactSet::begin(const CollisionMesh &mesh, const ContactMaterial &materia
                        View<InitialForce> initial, View<Vec3> positions) {
     std::map<std::array<int, 4>, Vec3> forces;
     for (const InitialForce &of : initial) forces[of.vertex] = of.force;
-    overlaps.clear(), lagged_.clear(), friction_.clear();
+    overlaps.clear(), lagged_.clear(), resting_.clear(), friction_.clear();
     for (const ContactPair &pair : pairs) {
         const double gap = std::sqrt(pair.closest.distance2);
         const auto force = forces.find(stencil(mesh, pair, pair.closest).vertex);
@@ -160,12 +160,16 @@ std::vector<PairEnergy> ContactSet::energies(const CollisionMesh &mesh, const Co
 }
 
 void ContactSet::find(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<ContactPair> &pairs,
-                      View<Vec3> start, View<Vec3> positions, double damping) {
+                      View<unsigned char> objects, View<Vec3> start, View<Vec3> positions, double damping) {
     overlaps.activate(mesh, material, pairs); // the same until contacts are found again, whatever the stiffness is then
     std::vector<Contact> found = linearise(mesh, material, pairs, start, positions, damping);
-    for_known(lagged_, found, [](const LaggedForce &before, Contact &now) {
+    const auto newest = resting_.insert(resting_.end(), lagged_.begin(), lagged_.end());
+    std::inplace_merge(resting_.begin(), newest, resting_.end(),
+                       [](const LaggedForce &a, const LaggedForce &b) { return a.name < b.name; });
+    for_known(resting_, found, [](const LaggedForce &before, Contact &now) {
         if (now.gap < now.barrier.d_hat) now.friction.normal_force = before.force;
     });
+    std::erase_if(resting_, [&](const LaggedForce &lagged) { return any_marked(objects_of(mesh, lagged.name), objects); });
     contacts_ = std::move(found);
     lagged_.clear();
     for (const Contact &contact : contacts_) lagged_.push_back({contact.name, contact.friction.normal_force});

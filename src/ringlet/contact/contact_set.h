@@ -51,11 +51,12 @@ public:
     void begin_step(std::vector<Vec3> guess) { guess_ = std::move(guess); }
 
     // Replaces the contacts by those of the contact pairs at `positions`; `start` says where the step began, for the slip.
+    // The pairs are all that have a marked object; forces between others are remembered until they are found again.
     // The normal force of friction is lagged; it is 0 for a new contact: the force at an iterate says little of the solution.
     // With `damping`, a part of their stiffness, pairs of moving primitives are contacts even where initial overlaps do not
     // push.
     void find(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<ContactPair> &pairs,
-              View<Vec3> start, View<Vec3> positions, double damping = 0.0);
+              View<unsigned char> objects, View<Vec3> start, View<Vec3> positions, double damping = 0.0);
 
     // Keeps the slip of the contacts as a step ends, up to the stick length: what has slipped farther has slid.
     void commit_friction(View<Vec3> positions);
@@ -74,6 +75,9 @@ public:
     PairValue value(int pair, const Vec3 &separation) const {
         return is_contact(pair) ? contacts_[pair].value(separation) : tie(pair).value(separation);
     }
+    bool pushes(int pair) const { // or is a tie; not only damped
+        return !is_contact(pair) || contacts_[pair].gap < contacts_[pair].barrier.d_hat;
+    }
     double kept_energy(int pair, const Vec3 &separation) const { // as of a contact
         return is_contact(pair) ? contacts_[pair].kept_energy(separation) : tie(pair).energy(separation);
     }
@@ -89,7 +93,7 @@ public:
     const std::vector<FrictionState> &friction() const { return friction_; }
     const std::vector<LaggedForce> &lagged_forces() const { return lagged_; }
     void recall(std::vector<FrictionState> friction) { friction_ = std::move(friction); }
-    void recall(std::vector<LaggedForce> forces) { lagged_ = std::move(forces); }
+    void recall(std::vector<LaggedForce> forces) { lagged_ = std::move(forces), resting_.clear(); }
 
 private:
     bool is_contact(int pair) const { return pair < int(contacts_.size()); }
@@ -104,8 +108,9 @@ private:
     std::vector<Vec3> guess_; // before the first step: empty
     std::vector<FrictionState> friction_;
     std::vector<Contact> contacts_;
-    std::vector<LaggedForce> lagged_; // of each contact
-    Lists<Role> roles_;               // of vertices
+    std::vector<LaggedForce> lagged_;  // of each contact
+    std::vector<LaggedForce> resting_; // between objects that were not marked when contacts were found last
+    Lists<Role> roles_;                // of vertices
     std::vector<int> vertices_;
 };
 

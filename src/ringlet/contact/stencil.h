@@ -17,6 +17,14 @@ inline uint64_t contact_name(const ContactPair &pair, int point = 0) {
 }
 inline uint64_t pair_of(uint64_t contact_name) { return contact_name & ~uint64_t(max_points_of_pair); }
 
+// The objects of both primitives of a contact.
+inline std::array<int, 2> objects_of(const CollisionMesh &mesh, uint64_t contact_name) {
+    constexpr uint64_t number = (uint64_t(1) << 30) - 1;
+    const int i = int(contact_name >> 33 & number), j = int(contact_name >> 3 & number);
+    const bool edge_edge = contact_name >> 63 == 0;
+    return {mesh.object[edge_edge ? mesh.edges[i][0] : i], mesh.object[edge_edge ? mesh.edges[j][0] : mesh.triangles[j][0]]};
+}
+
 // Walks through two lists in the order of names together: calls work(known, found) for each of `found` whose name one of
 // `known` has.
 template <class Known, class Found, class NameOf, class Work>

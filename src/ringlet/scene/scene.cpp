@@ -127,7 +127,8 @@ std::vector<Contact> Scene::touching() {
     material.stiffness.assign(vertices.count(), 1.0);
     material.firm_stiffness = material.stiffness;
     ContactSet contacts; // without a past
-    contacts.find(vertices.mesh, material, configuration.contact_pairs(), configuration.positions, configuration.positions);
+    contacts.find(vertices.mesh, material, configuration.contact_pairs(), std::vector<unsigned char>(vertices.objects, 1),
+                  configuration.positions, configuration.positions);
     configuration.candidates.clear();
     return contacts.contacts();
 }

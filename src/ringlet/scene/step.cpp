@@ -23,7 +23,7 @@ void find_initial_contacts(SceneData &scene, double dt) {
     begin_contact(scene, dt);
     const std::vector<ContactPair> touching = scene.configuration.contact_pairs();
     contacts.begin(scene.vertices.mesh, scene.vertices.material, touching, scene.initial_forces, now);
-    contacts.find(scene.vertices.mesh, scene.vertices.material, touching, now, now);
+    contacts.find(scene.vertices.mesh, scene.vertices.material, touching, scene.blocks.active_objects(), now, now);
     scene.stiffness.raise_loads(contacts);
     scene.initial_forces.clear();
     scene.begun = true;
@@ -117,11 +117,11 @@ void commit(SceneData &scene, View<Vec3> start, double dt, const SolverEffort &e
     const std::vector<Vec3> &now = scene.configuration.positions;
     const std::vector<ContactPair> touching = scene.configuration.contact_pairs();
     ContactSet &contacts = scene.objective.contacts;
-    scene.objective.find_contacts(touching, start, now);
+    scene.blocks.activate_all();
+    contacts.find(scene.vertices.mesh, scene.vertices.material, touching, scene.blocks.active_objects(), start, now);
     contacts.commit_friction(now);
     if (scene.contact.parting_speed == 0.0)
         contacts.overlaps.settle(touching, contacts.contacts(), now, scene_settings::parting_speed * dt);
-    scene.blocks.activate_all();
     std::vector<unsigned char> finite(scene.blocks.count());
     scene.blocks.for_active([&](int b) { finite[b] = scene.blocks[b].commit(scene.blocks.of(b, x), dt, effort); });
     if (std::count(finite.begin(), finite.end(), 0) > 0) scene.take_placed();

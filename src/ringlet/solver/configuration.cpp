@@ -18,9 +18,11 @@ void Configuration::find_candidates() {
     if (candidates.empty()) begin({positions, positions}, Candidates::Serve::later_moves);
 }
 
-std::vector<ContactPair> Configuration::contact_pairs() {
+std::vector<ContactPair> Configuration::contact_pairs() { return contact_pairs(std::vector<unsigned char>(table_.objects, 1)); }
+
+std::vector<ContactPair> Configuration::contact_pairs(View<unsigned char> objects) {
     find_candidates();
-    return pairs.contact_pairs(positions);
+    return pairs.contact_pairs(positions, objects);
 }
 
 void Configuration::limit(PlannedMove &move, Yield yield, Candidates::Serve serve, SceneReport &report) {

@@ -19,8 +19,9 @@ public:
     Candidates candidates;
     MoveCandidates pairs; // of the last move
 
-    // The pairs that are nearer than their activation distance.
+    // The pairs that are nearer than their activation distance: all, or those with a marked object.
     std::vector<ContactPair> contact_pairs();
+    std::vector<ContactPair> contact_pairs(View<unsigned char> objects);
 
     // Shortens a move so that no pair comes closer than it may.
     void limit(PlannedMove &move, Yield yield, Candidates::Serve serve, SceneReport &report);

@@ -17,15 +17,16 @@ SolverEffort Newton::minimise(View<Vec3> start, const NewtonSettings &settings, 
     StoppingRule stopping(table_.objects, settings.tolerance);
     Stall stall(table_.objects);
     SearchPath path(objective_.blocks.size());
-    std::vector<double> largest(table_.objects, 0.0); // per object: coordinate of its last search direction [m]
-    std::vector<Vec3> full_step;                      // where the last search direction of all objects leads
+    std::vector<double> largest(table_.objects, 0.0);    // per object: coordinate of its last search direction [m]
+    std::vector<Vec3> full_step;                         // where the last search direction of all objects leads
+    std::vector<unsigned char> moved(table_.objects, 1); // since contacts were found
     int number = 0;
     for (bool finished = false; !finished && number < settings.iterations + settings.extra; ++number) {
         const bool extra = number >= settings.iterations, last = number + 1 >= settings.iterations;
         if (extra && !refinement.activate_unfinished(objective_.blocks, configuration_.positions,
                                                      stall.may_move(largest, settings.tolerance)))
             break;
-        find_contacts(start, damping.part(), report);
+        find_contacts(start, damping.part(), moved, report);
         solve(settings.linear, x, path.straight, report);
         measure_direction(objective_.blocks, path.straight, largest);
         stopping.measure(objective_, largest);
@@ -56,9 +57,12 @@ SolverEffort Newton::minimise(View<Vec3> start, const NewtonSettings &settings, 
     return {double(number), report.cuts, residual, residual <= settings.tolerance, std::move(stalled)};
 }
 
-void Newton::find_contacts(View<Vec3> start, double damping, SceneReport &report) {
+// Of the objects that have moved since they were found last, and of those that are active.
+void Newton::find_contacts(View<Vec3> start, double damping, std::vector<unsigned char> &moved, SceneReport &report) {
     const Stopwatch watch(report.time_pairs);
-    objective_.find_contacts(configuration_.contact_pairs(), start, configuration_.positions, damping);
+    for (int o = 0; o < table_.objects; ++o) moved[o] |= objective_.blocks.is_active(o);
+    objective_.find_contacts(configuration_.contact_pairs(moved), moved, start, configuration_.positions, damping);
+    moved = objective_.blocks.active_objects();
 }
 
 void Newton::solve(const LinearSettings &settings, const AlignedVector &x, AlignedVector &direction, SceneReport &report) {

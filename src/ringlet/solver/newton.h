@@ -28,7 +28,7 @@ public:
                           SceneReport &report);
 
 private:
-    void find_contacts(View<Vec3> start, double damping, SceneReport &report);
+    void find_contacts(View<Vec3> start, double damping, std::vector<unsigned char> &moved, SceneReport &report);
     void solve(const LinearSettings &settings, const AlignedVector &x, AlignedVector &direction, SceneReport &report);
     void follow_loads(const AlignedVector &direction);
     std::vector<double> choose_path(const AlignedVector &x, const std::vector<unsigned char> &cautious, SearchPath &path) const;

@@ -7,37 +7,28 @@
 #include <limits>
 
 namespace ringlet {
-namespace {
-
-// Whether one of two objects is marked; −1 is none.
-bool either(View<unsigned char> marked, int a, int b) { return (a >= 0 && marked[a] != 0) || (b >= 0 && marked[b] != 0); }
-
-} // namespace
-
 void ContactEnergy::remove(View<unsigned char> changed) {
-    std::erase_if(barriers_, [&](const Shared &shared) { return either(changed, shared.a, shared.b); });
+    std::erase_if(barriers_, [&](const Shared &shared) { return any_marked({shared.a, shared.b}, changed); });
 }
 
 void ContactEnergy::measure_kept(View<Vec3> positions, View<unsigned char> changed) {
 #pragma omp parallel for schedule(static)
     for (int k = 0; k < contacts_.count(); ++k)
-        if (const auto [a, b] = objects_[k]; either(changed, a, b))
+        if (any_marked(objects_[k], changed))
             kept_[k] = contacts_.kept_energy(k, contacts_.stencil_of(k).separation(positions));
 }
 
-void ContactEnergy::at_linearisation(View<Vec3> positions, View<unsigned char> active) {
-    objects_.resize(contacts_.count());
-    kept_.assign(contacts_.count(), 0.0);
-#pragma omp parallel for schedule(static)
-    for (int k = 0; k < contacts_.count(); ++k) objects_[k] = table_.objects_of(contacts_.stencil_of(k));
-    remove(active);
+void ContactEnergy::at_linearisation(View<Vec3> positions) {
     const std::vector<Contact> &all = contacts_.contacts();
-    const std::vector<Shared> of_active = collect<Shared>(int(all.size()), [&](int k, std::vector<Shared> &barriers) {
-        if (const auto [a, b] = objects_[k]; either(active, a, b))
-            barriers.push_back({a, b, all[k].barrier.energy_at(all[k].gap)});
-    });
-    barriers_.insert(barriers_.end(), of_active.begin(), of_active.end());
-    measure_kept(positions, active);
+    objects_.resize(contacts_.count());
+    kept_.resize(contacts_.count());
+    barriers_.resize(all.size());
+#pragma omp parallel for schedule(static)
+    for (int k = 0; k < contacts_.count(); ++k) {
+        const auto [a, b] = objects_[k] = table_.objects_of(contacts_.stencil_of(k));
+        kept_[k] = contacts_.kept_energy(k, contacts_.stencil_of(k).separation(positions));
+        if (size_t(k) < all.size()) barriers_[k] = {a, b, all[k].barrier.energy_at(all[k].gap)};
+    }
 }
 
 void ContactEnergy::exact(const ReachablePairs &pairs, View<Vec3> positions, View<double> traveled,
@@ -75,20 +66,31 @@ std::vector<double> Objective::contact_stiffness(double scale, double dt) const 
     return stiffness;
 }
 
-void Objective::find_contacts(const std::vector<ContactPair> &pairs, View<Vec3> start, View<Vec3> positions, double damping) {
-    contacts.find(table.mesh, table.material, pairs, start, positions, damping);
+void Objective::find_contacts(const std::vector<ContactPair> &pairs, View<unsigned char> objects, View<Vec3> start,
+                              View<Vec3> positions, double damping) {
+    contacts.find(table.mesh, table.material, pairs, objects, start, positions, damping);
     values_.resize(contacts.count());
     couplings.find(contacts, table, blocks);
     touched_ = {size_t(blocks.count()), [&](const auto &work) {
                     for (const int v : contacts.vertices()) work(blocks.block_of(table.object_of(v)), v);
                 }};
+    find_neighbours(objects);
+}
+
+void Objective::find_neighbours(View<unsigned char> objects) {
+    std::erase_if(neighbours_, [&](const Neighbours &two) { return !two.pushes || any_marked(two.objects, objects); });
+    for (int pair = 0; pair < contacts.count(); ++pair) { // most follow one of the same objects
+        const std::array<int, 2> both = table.objects_of(contacts.stencil_of(pair));
+        if (both[0] < 0 || both[1] < 0 || both[0] == both[1]) continue;
+        if (neighbours_.empty() || neighbours_.back().objects != both) neighbours_.push_back({both, false});
+        neighbours_.back().pushes |= contacts.pushes(pair);
+    }
 }
 
 std::vector<unsigned char> Objective::with_touched(const std::vector<unsigned char> &objects) const {
     std::vector<unsigned char> all = objects;
-    for (int pair = 0; pair < contacts.count(); ++pair) {
-        const auto [a, b] = table.objects_of(contacts.stencil_of(pair));
-        if (a < 0 || b < 0) continue;
+    for (const Neighbours &two : neighbours_) {
+        const auto [a, b] = two.objects;
         if (objects[a]) all[b] = 1;
         if (objects[b]) all[a] = 1;
     }
@@ -122,7 +124,7 @@ void Objective::sum_energies(std::vector<double> &of_objects) const {
 }
 
 void Objective::energies_at_linearisation(std::vector<double> &of_objects) {
-    contact_energy_.at_linearisation(positions_, blocks.active_objects());
+    contact_energy_.at_linearisation(positions_);
     sum_energies(of_objects);
 }
 
@@ -178,6 +180,7 @@ void Objective::lag_normal_forces(const AlignedVector &direction) {
 #pragma omp parallel for schedule(static)
     for (int k = 0; k < int(all.size()); ++k) {
         const Contact &c = all[k];
+        if (!any_marked(table.objects_of(c.at), blocks.active_objects())) continue;
         Vec3 change = Vec3::Zero();
         for (int i = 0; i < 4; ++i)
             if (table.mesh.moves[c.at.vertex[i]] && c.at.weight[i] != 0.0)

@@ -32,7 +32,7 @@ class ContactEnergy {
 public:
     ContactEnergy(const VertexTable &table, const ContactSet &contacts) : table_(table), contacts_(contacts) {}
 
-    void at_linearisation(View<Vec3> positions, View<unsigned char> active);
+    void at_linearisation(View<Vec3> positions);
 
     // `traveled` says which part of its longest path each object has covered: a lower bound on gaps.
     void exact(const ReachablePairs &pairs, View<Vec3> positions, View<double> traveled, View<unsigned char> changed);
@@ -71,11 +71,13 @@ public:
     // The largest stiffness of each vertex against contacts, `scale` times that of its block [N/m]; infinite where prescribed.
     std::vector<double> contact_stiffness(double scale, double dt) const;
 
-    // Replaces the contacts by those of the contact pairs at `positions`; the step began at `start`. The Hessian damps the
-    // relative motion of strands by `damping`, a part of the contacts' stiffness (Levenberg 1944).
-    void find_contacts(const std::vector<ContactPair> &pairs, View<Vec3> start, View<Vec3> positions, double damping = 0.0);
+    // Replaces the contacts by those of the contact pairs at `positions`, which are all that have one of `objects`, of which
+    // all active ones must be; the step began at `start`. The Hessian damps the relative motion of strands by `damping`, a part
+    // of the contacts' stiffness (Levenberg 1944).
+    void find_contacts(const std::vector<ContactPair> &pairs, View<unsigned char> objects, View<Vec3> start,
+                       View<Vec3> positions, double damping = 0.0);
 
-    // These objects, and those in contact with one of them.
+    // These objects, and those in contact with one of them, where contacts were found last.
     std::vector<unsigned char> with_touched(const std::vector<unsigned char> &objects) const;
 
     // Objects that a factor of their own solves: exact blocks that nothing couples.
@@ -95,10 +97,12 @@ public:
     const Vec3 &position(int vertex) const { return positions_[vertex]; } // where energies or contacts were evaluated last
 
     // Lags the normal forces: those that the contacts' matrix gives at the end of the search direction, where all forces
-    // balance. They are limited to what a small gap would give, since little of the direction may be taken.
+    // balance. Between objects that are not active they stay. They are limited to what a small gap would give, since little of
+    // the direction may be taken.
     void lag_normal_forces(const AlignedVector &direction);
 
 private:
+    void find_neighbours(View<unsigned char> objects);
     void add_pair_forces(int vertex, Block &block) const;
     void evaluate(const AlignedVector &x, const std::vector<unsigned char> &changed);
     std::vector<unsigned char> active_among(const std::vector<unsigned char> &objects) const;
@@ -106,7 +110,12 @@ private:
 
     std::vector<PairValue> values_;
     ContactEnergy contact_energy_;
-    Lists<int> touched_;               // vertices that contacts act on, of blocks
+    Lists<int> touched_; // vertices that contacts act on, of blocks
+    struct Neighbours {
+        std::array<int, 2> objects;
+        bool pushes; // or is damped
+    };
+    std::vector<Neighbours> neighbours_;
     std::vector<double> own_energies_; // per object, without contacts
     std::vector<Vec3> positions_;      // of all vertices, where energies were evaluated last
 };
