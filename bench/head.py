@@ -7,7 +7,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from ringlet import Clock, build_groom, read_recipe, read_shot, simulate
+from ringlet import Cache, Clock, Groom, build_groom, read_recipe, read_shot, simulate
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "child"
 
@@ -41,18 +41,7 @@ def run(
     preroll: untimed steps with the head at rest
     radius:  contact radius of a lock [m]
     """
-    text = (EXAMPLE / "curls.recipe.toml").read_text()
-    text = text.replace("count = 1050", f"count = {locks}").replace("points = 96", f"points = {points}")
-    text = text.replace("pitch = { value = 1.2, vary = 0.2 }", f"curls = {{ value = {points / 12}, vary = 0.1 }}")
-    text = text.replace('"head.usdc"', f'"{(EXAMPLE / "head.usdc").as_posix()}"')
-    with tempfile.TemporaryDirectory() as folder:
-        recipe, shot = Path(folder) / "head.recipe.toml", Path(folder) / "head.shot.toml"
-        recipe.write_text(text)
-        shot.write_text(
-            SHOT.format(groom=recipe.as_posix(), frames=frames, preroll=preroll, newton=newton, radius=radius)
-        )
-        groom = build_groom(read_recipe(recipe))
-        cache = simulate(read_shot(shot), groom)
+    groom, cache = simulated(locks, points, newton, frames, preroll, radius)
     steps = cache.statistics[1:]  # the first frame is the start
     clock = Clock()
     clock.cpu["step"] = [step["cpu_ms"] for step in steps]
@@ -73,3 +62,19 @@ def run(
         **{name: statistics.mean(step[name] for step in contacts) for name in MEANS},
         phases_wall_ms={name: statistics.mean(step[f"{name}_ms"] for step in contacts) for name in PHASES},
     )
+
+
+def simulated(locks: int, points: int, newton: int, frames: int, preroll: int, radius: float) -> tuple[Groom, Cache]:
+    """The groom of the benchmark, and its simulated cache."""
+    text = (EXAMPLE / "curls.recipe.toml").read_text()
+    text = text.replace("count = 1050", f"count = {locks}").replace("points = 96", f"points = {points}")
+    text = text.replace("pitch = { value = 1.2, vary = 0.2 }", f"curls = {{ value = {points / 12}, vary = 0.1 }}")
+    text = text.replace('"head.usdc"', f'"{(EXAMPLE / "head.usdc").as_posix()}"')
+    with tempfile.TemporaryDirectory() as folder:
+        recipe, shot = Path(folder) / "head.recipe.toml", Path(folder) / "head.shot.toml"
+        recipe.write_text(text)
+        shot.write_text(
+            SHOT.format(groom=recipe.as_posix(), frames=frames, preroll=preroll, newton=newton, radius=radius)
+        )
+        groom = build_groom(read_recipe(recipe))
+        return groom, simulate(read_shot(shot), groom)

@@ -31,6 +31,10 @@ from .api.grooms import write_groom as write_groom
 from .api.hairs import build_hairs as build_hairs
 from .api.hairs import measure_hairs as measure_hairs
 from .api.hairs import write_hairs as write_hairs
+from .api.loops import Loop as Loop
+from .api.loops import empty_loop_time as empty_loop_time
+from .api.loops import recorded_loops as recorded_loops
+from .api.loops import threads as threads
 from .api.motion import motion_json as motion_json
 from .api.motion import motion_table as motion_table
 from .api.motion import motion_words as motion_words

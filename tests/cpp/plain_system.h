@@ -21,22 +21,16 @@ public:
         : apply_(apply), precondition_(precondition), ends_(std::move(ends)) {}
 
     size_t clusters() const { return ends_.size(); }
-    Numbers multiply(const Unknowns &p, Residual &Ap, const Mask &) const {
+    Numbers extend(const Unknowns &z, const Numbers &beta, Unknowns &p, Residual &Ap, const Mask &busy) const {
+        for_clusters(busy, [&](size_t c, auto of) { p(of) = z(of) + beta[c] * p(of); });
         apply_(p, Ap);
         return products(p, Ap);
     }
-    Numbers precondition(const Residual &r, Unknowns &z, const Mask &) const {
+    Numbers advance(const Numbers &alpha, const Unknowns &p, const Residual &Ap, Unknowns &x, Residual &r, Unknowns &z,
+                    const Mask &busy) const {
+        for_clusters(busy, [&](size_t c, auto of) { x(of) += alpha[c] * p(of), r(of) -= alpha[c] * Ap(of); });
         precondition_(r, z);
         return products(r, z);
-    }
-    void add(const Numbers &alpha, const Unknowns &p, Unknowns &x, const Mask &busy) const {
-        for_clusters(busy, [&](size_t c, auto of) { x(of) += alpha[c] * p(of); });
-    }
-    void subtract(const Numbers &alpha, const Residual &Ap, Residual &r, const Mask &busy) const {
-        for_clusters(busy, [&](size_t c, auto of) { r(of) -= alpha[c] * Ap(of); });
-    }
-    void extend(const Unknowns &z, const Numbers &beta, Unknowns &p, const Mask &busy) const {
-        for_clusters(busy, [&](size_t c, auto of) { p(of) = z(of) + beta[c] * p(of); });
     }
 
 private:

@@ -3,6 +3,7 @@
 #include "ringlet/ccd/settings.h"
 #include "ringlet/ccd/spread_correction.h"
 #include "ringlet/math/disjoint_sets.h"
+#include "ringlet/math/parallel.h"
 
 #include <algorithm>
 #include <map>
@@ -100,9 +101,9 @@ void ImpactZones::correct(const std::vector<Impact> &impacts, bool keep_own) {
                                                                     : Vec3(zone.moment / zone.mass)};
         }
     spread_correction(move_.candidates, start, end, ccd::max_strain, corrections);
-#pragma omp parallel for schedule(static)
-    for (int v = 0; v < vertices; ++v)
+    parallel_for(vertices, [&](int v) {
         if (corrections[v].weight > 0.0) end[v] += corrections[v].weight * (start[v] + corrections[v].motion - end[v]);
+    });
 }
 
 } // namespace

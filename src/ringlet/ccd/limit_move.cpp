@@ -72,24 +72,24 @@ private:
 MoveLimiter::MoveLimiter(MoveCandidates &pairs, View<Vec3> start, PlannedMove &move, Yield yield)
     : pairs_(pairs), mesh_(pairs.candidates().mesh()), start_(start), move_(move), yield_(yield),
       transient_(pairs.transient_pairs()), fraction_(mesh_.objects.size(), 1.0), changed_(move.to.size(), 0) {
+    const std::vector<CandidatePair *> &cached = pairs_.path_candidates();
+    const int count = int(cached.size());
+    const auto pair_of = [&](int k) { return k < count ? cached[k] : &transient_[k - count]; };
     const auto is_whole = [&](int object) { return mesh_.objects[object].whole; };
+    pairs_of_object_ = {mesh_.objects.size(), count + int(transient_.size()), [&](int k, const auto &add) {
+                            CandidatePair *const pair = pair_of(k);
+                            const int a = pair->object[0], b = pair->object[1];
+                            if (pair->edge_edge && a != b && is_whole(a) && is_whole(b)) add(a, pair), add(b, pair);
+                        }};
     const auto moves = [&](const auto &primitive) {
         return !is_whole(mesh_.object[primitive[0]]) && any_of(mesh_.moves, primitive);
     };
-    pairs_of_object_ = {mesh_.objects.size(), [&](const auto &add) {
-                            const auto consider = [&](CandidatePair &pair) {
-                                const auto [a, b] = pair.object;
-                                if (is_whole(a) && is_whole(b)) {
-                                    if (pair.edge_edge && a != b) add(a, &pair), add(b, &pair);
-                                } else if (!any_local_) {
-                                    any_local_ = with_vertices(mesh_, pair, [&](const auto &primitive, const auto &other) {
-                                        return moves(primitive) || moves(other);
-                                    });
-                                }
-                            };
-                            for (CandidatePair *pair : pairs.path_candidates()) consider(*pair);
-                            for (CandidatePair &pair : transient_) consider(pair);
-                        }};
+    const bool all_whole = std::all_of(mesh_.objects.begin(), mesh_.objects.end(), [&](const CollisionObject &object) {
+        return object.whole ||
+               std::count(mesh_.moves.begin() + object.first, mesh_.moves.begin() + object.end, 0) == object.end - object.first;
+    });
+    for (int k = 0; !all_whole && !any_local_ && k < count + int(transient_.size()); ++k)
+        any_local_ = with_vertices(mesh_, *pair_of(k), [&](const auto &a, const auto &b) { return moves(a) || moves(b); });
 }
 
 // The whole object of an edge; −1: it has none, or does not move.

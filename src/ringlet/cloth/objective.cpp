@@ -2,6 +2,7 @@
 
 #include "ringlet/dynamics/time_integrator.h"
 #include "ringlet/energy/cloth/hinge.h"
+#include "ringlet/math/parallel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,13 +11,12 @@
 namespace ringlet {
 namespace {
 
-constexpr size_t worth_threads = 1000; // elements: below, waking them takes longer
+constexpr int worth_threads = 1000; // elements: below, waking them takes longer
 
 // f(i) for all i in parallel, and the sum in the order of i: the same bits for any number of threads.
 template <class Term> double ordered_sum(int count, const Term &term) {
     std::vector<double> values(count);
-#pragma omp parallel for schedule(static) if (size_t(count) > worth_threads)
-    for (int i = 0; i < count; ++i) values[i] = term(i);
+    parallel_for(count, worth_threads, [&](int i) { values[i] = term(i); });
     return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
@@ -134,15 +134,13 @@ double ClothObjective::energy(View<Vec3> positions) const {
 // Derivatives of every element, to be gathered by the vertices.
 void ClothObjective::measure(View<Vec3> positions) {
     const ClothModel &m = *model_;
-#pragma omp parallel for schedule(static) if (m.triangles.size() > worth_threads)
-    for (int t = 0; t < int(m.triangles.size()); ++t) {
+    parallel_for(int(m.triangles.size()), worth_threads, [&](int t) {
         Membrane &at = triangle_terms_[t] = membrane(shape(t, positions), rest_strain_[t], m.stiffness);
         const double weight = stiffer_ * m.membrane[t].area;
         for (Vec3 *gradient : {&at.gradient_warp, &at.gradient_weft}) *gradient *= weight;
         for (Mat3 *block : {&at.warp_warp, &at.warp_weft, &at.weft_weft}) *block *= weight;
-    }
-#pragma omp parallel for schedule(static) if (m.hinges.size() > worth_threads)
-    for (int k = 0; k < int(m.hinges.size()); ++k) {
+    });
+    parallel_for(int(m.hinges.size()), worth_threads, [&](int k) {
         const auto &h = m.hinges[k];
         const Vec3 corners[4] = {positions[h[0]], positions[h[1]], positions[h[2]], positions[h[3]]};
         const Hinge at = hinge(corners);
@@ -150,7 +148,7 @@ void ClothObjective::measure(View<Vec3> positions) {
         std::copy(at.gradient, at.gradient + 4, terms.gradient);
         terms.stiffness = stiffer_ * m.hinge_stiffness[k];
         terms.moment = terms.stiffness * hinge_strain(at.angle, rest_angle_[k]);
-    }
+    });
 }
 
 // One vertex: its gradient and its row of the Hessian.
@@ -186,8 +184,7 @@ void ClothObjective::gather(int vertex, View<Vec3> positions, Vec3 &gradient, Bl
 
 void ClothObjective::assemble(View<Vec3> positions, std::span<Vec3> gradient, BlockMatrix &hessian) {
     measure(positions);
-#pragma omp parallel for schedule(static) if (model_->mass.size() > worth_threads)
-    for (int i = 0; i < model_->vertex_count(); ++i) gather(i, positions, gradient[i], hessian);
+    parallel_for(model_->vertex_count(), worth_threads, [&](int i) { gather(i, positions, gradient[i], hessian); });
 }
 
 ClothEnergies ClothObjective::energies(View<Vec3> positions) const {

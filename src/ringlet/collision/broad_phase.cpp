@@ -1,6 +1,7 @@
 #include "ringlet/collision/broad_phase.h"
 
 #include "ringlet/geometry/overlaps.h"
+#include "ringlet/math/parallel.h"
 
 #include <algorithm>
 #include <numeric>
@@ -142,17 +143,13 @@ void BroadPhase::search(const Bvh &tree_a, const A &all_a, const Bvh &tree_b, co
         }
         found.push_back({{p, q}, one_tree, d_hat});
     };
-#pragma omp parallel
-    {
+    parallel_chunks(int(starts.size()), 1, [&](int task) {
         Traversal here = traversal(tree_a, tree_b, boxes.is_static());
-#pragma omp for schedule(dynamic, 1)
-        for (size_t task = 0; task < starts.size(); ++task) {
-            descend(here, starts[task], [&] {
-                if (std::is_same_v<A, B> && boxes.is_static()) cull_edges(tree_a, boxes, move, here);
-                for (int k = 0; k < here.found; ++k) take(here.boxes[k], found_[task]);
-            });
-        }
-    }
+        descend(here, starts[task], [&] {
+            if (std::is_same_v<A, B> && boxes.is_static()) cull_edges(tree_a, boxes, move, here);
+            for (int k = 0; k < here.found; ++k) take(here.boxes[k], found_[task]);
+        });
+    });
 }
 
 // Appends the pairs of all tasks, sorted: into bins by the first of a pair, which is below `firsts`, then within bins.
@@ -165,10 +162,10 @@ void BroadPhase::gather(size_t firsts, Pairs &all) {
     all.resize(bins.back());
     for (const Pairs &found : found_)
         for (const PrimitivePair &pair : found) all[bins[pair.primitive[0]]++] = pair; // bins[i] becomes the end of bin i
-#pragma omp parallel for schedule(dynamic, 1024)
-    for (size_t i = 0; i < firsts; ++i)
+    parallel_chunks(int(firsts), 1024, [&](int i) {
         std::sort(all.begin() + ptrdiff_t(i == 0 ? before_these : bins[i - 1]), all.begin() + ptrdiff_t(bins[i]),
                   [](const PrimitivePair &a, const PrimitivePair &b) { return a.primitive[1] < b.primitive[1]; });
+    });
 }
 
 } // namespace ringlet

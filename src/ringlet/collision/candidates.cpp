@@ -1,16 +1,18 @@
 #include "ringlet/collision/candidates.h"
 
+#include "ringlet/math/parallel.h"
+
 #include <algorithm>
 
 namespace ringlet {
 
 std::vector<CandidatePair> Candidates::with_gaps(const std::vector<PrimitivePair> &found) const {
     std::vector<CandidatePair> pairs(found.size());
-#pragma omp parallel for schedule(static)
-    for (size_t k = 0; k < found.size(); ++k)
+    parallel_for(int(found.size()), [&](int k) {
         with_vertices(mesh_, found[k], [&](const auto &a, const auto &b) {
             pairs[k] = {found[k], 0.0, {mesh_.object[a[0]], mesh_.object[b[0]]}};
         });
+    });
     if (!mesh_.exempt.empty())
         std::erase_if(pairs, [&](const CandidatePair &pair) {
             return std::binary_search(mesh_.exempt.begin(), mesh_.exempt.end(), pair, before<PrimitivePair>);

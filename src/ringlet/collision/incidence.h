@@ -14,9 +14,8 @@ using VertexLists = Lists<int>;
 
 // The primitives of each vertex.
 template <size_t N> VertexLists primitives_of(size_t vertices, const std::vector<std::array<int, N>> &primitives) {
-    return {vertices, [&](const auto &add) {
-                for (int i = 0; i < int(primitives.size()); ++i)
-                    for (const int v : primitives[i]) add(v, i);
+    return {vertices, int(primitives.size()), [&](int i, const auto &add) {
+                for (const int v : primitives[i]) add(v, i);
             }};
 }
 

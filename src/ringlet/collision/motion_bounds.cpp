@@ -1,6 +1,7 @@
 #include "ringlet/collision/motion_bounds.h"
 
 #include "ringlet/math/collect.h"
+#include "ringlet/math/parallel.h"
 
 #include <algorithm>
 
@@ -33,8 +34,7 @@ void MotionBounds::fit_vertex(const Move &move, const Fit &how, int v) {
 
 void MotionBounds::fit(const Move &move, const Fit &how) {
     low_.resize(move.start.size()), high_.resize(move.start.size());
-#pragma omp parallel for schedule(static)
-    for (int v = 0; v < int(low_.size()); ++v) fit_vertex(move, how, v);
+    parallel_for(int(low_.size()), [&](int v) { fit_vertex(move, how, v); });
     boxes_.fit_static(low_, high_);
 }
 
@@ -45,21 +45,20 @@ void MotionBounds::fit(const Move &move, const Fit &how, const std::vector<int> 
 
 std::vector<unsigned char> MotionBounds::escaped(const Move &move) const {
     std::vector<unsigned char> escaped(move.start.size());
-#pragma omp parallel for schedule(static)
-    for (int v = 0; v < int(escaped.size()); ++v)
+    parallel_for(int(escaped.size()), [&](int v) {
         escaped[v] = leaves(v, move.start[v]) || leaves(v, move.end[v]) || (!move.apex.empty() && leaves(v, move.apex[v]));
+    });
     return escaped;
 }
 
 void MotionBounds::move_rigidly(const RigidMotion &motion, View<Vec3> from) {
     const Vec3 turned = (motion.rotation.transpose() - Mat3::Identity()).cwiseAbs().rowwise().sum();
-#pragma omp parallel for schedule(static)
-    for (int v = 0; v < int(from.size()); ++v) {
+    parallel_for(int(from.size()), [&](int v) {
         const Vec3 below = from[v] - low_[v], above = high_[v] - from[v], to = motion(from[v]);
         const Vec3 lost = turned * below.cwiseMax(above).maxCoeff();
         low_[v] = to - below + lost;
         high_[v] = to + above - lost;
-    }
+    });
     boxes_.fit_static(low_, high_);
 }
 

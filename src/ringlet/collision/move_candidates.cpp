@@ -92,10 +92,10 @@ void MoveCandidates::begin(const Move &move) {
 
 void MoveCandidates::find_moving() {
     moving_.assign(mesh_.objects.size(), 0);
-#pragma omp parallel for schedule(static)
-    for (int object = 0; object < int(moving_.size()); ++object)
+    parallel_for(int(moving_.size()), [&](int object) {
         for (int v = mesh_.objects[object].first; v < mesh_.objects[object].end && !moving_[object]; ++v)
             moving_[object] = paths_.moves(v);
+    });
 }
 
 MeshSubset MoveCandidates::refit(const Move &move, View<unsigned char> changed) {
@@ -135,13 +135,12 @@ void MoveCandidates::add_transient_candidates() {
 
 void MoveCandidates::commit(View<Vec3> start, View<Vec3> end) {
     for (auto *pairs : {&candidates_.pairs(), &transient_})
-#pragma omp parallel for schedule(static)
-        for (int k = 0; k < int(pairs->size()); ++k) {
+        parallel_for(int(pairs->size()), [&](int k) {
             CandidatePair &pair = (*pairs)[k];
-            if (pair.min_gap <= 0.0 || at_rest(pair) || paths_.length(pair) == 0.0) continue;
+            if (pair.min_gap <= 0.0 || at_rest(pair) || paths_.length(pair) == 0.0) return;
             pair.min_gap -=
                 with_vertices(mesh_, pair, [&](const auto &a, const auto &b) { return max_approach(a, b, start, end); });
-        }
+        });
     paths_.clear();
 }
 

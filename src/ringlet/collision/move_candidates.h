@@ -5,6 +5,7 @@
 #include "ringlet/collision/incidence.h"
 #include "ringlet/collision/narrow_phase.h"
 #include "ringlet/collision/swept_boxes.h"
+#include "ringlet/math/parallel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -37,24 +38,22 @@ public:
     }
 
     void measure(const Move &move, const MeshSubset &subset, View<unsigned char> escaped) {
-#pragma omp parallel for schedule(static)
-        for (int k = 0; k < int(subset.vertices.size()); ++k) {
+        parallel_for(int(subset.vertices.size()), [&](int k) {
             const int v = subset.vertices[k];
             double length2 = (move.end[v] - move.start[v]).squaredNorm();
             if (!move.apex.empty()) length2 = std::max(length2, (move.apex[v] - move.start[v]).squaredNorm());
             const float length = float(std::sqrt(length2));
             vertices_[v] = {length + length * std::numeric_limits<float>::epsilon(), escaped[v] != 0};
-        }
+        });
         const auto measure = [&](const std::vector<int> &numbers, const auto &primitives, std::vector<Path> &paths) {
-#pragma omp parallel for schedule(static)
-            for (int k = 0; k < int(numbers.size()); ++k) {
+            parallel_for(int(numbers.size()), [&](int k) {
                 Path path;
                 for (const int v : primitives[numbers[k]]) {
                     path.length = std::max(path.length, vertices_[v].length);
                     path.escaped |= vertices_[v].escaped;
                 }
                 paths[numbers[k]] = path;
-            }
+            });
         };
         measure(subset.edges, mesh_.edges, edges_);
         measure(subset.triangles, mesh_.triangles, triangles_);

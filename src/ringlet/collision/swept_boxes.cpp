@@ -1,5 +1,7 @@
 #include "ringlet/collision/swept_boxes.h"
 
+#include "ringlet/math/parallel.h"
+
 #include <numeric>
 
 namespace ringlet {
@@ -24,23 +26,20 @@ void SweptBoxes::refit(const Move &move, View<int> vertices) {
         const Vec3 from = point - origin;
         return Eigen::Array4f(float(from[0]), float(from[1]), float(from[2]), 0.0f);
     };
-    Eigen::Array4f largest = Eigen::Array4f::Zero();
-#pragma omp parallel
-    {
+    constexpr int range = 1024;
+    std::vector<float> largest((vertices.size() + range - 1) / range);
+    parallel_for(int(largest.size()), [&](int r) {
         Eigen::Array4f here = Eigen::Array4f::Zero();
-#pragma omp for schedule(static) nowait
-        for (int k = 0; k < int(vertices.size()); ++k) {
-            const int v = vertices[k];
+        for (const int v : vertices.subspan(r * range).first(std::min(range, int(vertices.size()) - r * range))) {
             Path &path = paths_[v];
             path.start = relative(move.start[v], origin_.start);
             path.end = relative(move.end[v], origin_.end);
             path.apex = move.apex.empty() ? path.end : relative(move.apex[v], origin_.end);
             here = here.max(path.start.abs()).max(path.end.abs()).max(path.apex.abs());
         }
-#pragma omp critical
-        largest = largest.max(here);
-    }
-    inflation_ = std::max(inflation_, bvh_settings::coordinate_rounding * largest.maxCoeff());
+        largest[r] = here.maxCoeff();
+    });
+    for (const float coordinate : largest) inflation_ = std::max(inflation_, bvh_settings::coordinate_rounding * coordinate);
 }
 
 void SweptBoxes::fit(const Move &move, const Origin &origin, double margin) {

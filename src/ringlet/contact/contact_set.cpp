@@ -2,6 +2,7 @@
 
 #include "ringlet/contact/settings.h"
 #include "ringlet/math/collect.h"
+#include "ringlet/math/parallel.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -134,10 +135,10 @@ std::vector<Contact> ContactSet::linearise(const CollisionMesh &mesh, const Cont
     std::vector<Contact> found = collect_of_pairs<Contact>(pairs, add);
     for_known(friction_, found, [](const FrictionState &before, Contact &now) { now.friction.reference -= before.slip; });
     if (guess_.empty()) return found;
-#pragma omp parallel for schedule(static)
-    for (int k = 0; k < int(found.size()); ++k)
+    parallel_for(int(found.size()), [&](int k) {
         if (Friction &friction = found[k].friction; friction.coefficient > 0.0)
             friction.reference = pair_rotation(found[k].at, start, guess_) * friction.reference;
+    });
     return found;
 }
 
@@ -178,16 +179,14 @@ void ContactSet::find(const CollisionMesh &mesh, const ContactMaterial &material
 
 void ContactSet::index(const CollisionMesh &mesh) {
     const int vertices = int(mesh.moves.size());
-    roles_ = {size_t(vertices), [&](const auto &work) {
-                  for (int pair = 0; pair < count(); ++pair) {
-                      const Stencil &at = stencil_of(pair);
-                      for (int i = 0; i < 4; ++i)
-                          if (mesh.moves[at.vertex[i]] && at.weight[i] != 0.0) work(at.vertex[i], Role{pair, i});
-                  }
+    roles_ = {size_t(vertices), count(), [&](int pair, const auto &add) {
+                  const Stencil &at = stencil_of(pair);
+                  for (int i = 0; i < 4; ++i)
+                      if (mesh.moves[at.vertex[i]] && at.weight[i] != 0.0) add(at.vertex[i], Role{pair, i});
               }};
-    vertices_.clear();
-    for (int v = 0; v < vertices; ++v)
-        if (!of(v).empty()) vertices_.push_back(v);
+    vertices_ = collect<int>(vertices, [&](int v, std::vector<int> &touched) {
+        if (!of(v).empty()) touched.push_back(v);
+    });
 }
 
 } // namespace ringlet

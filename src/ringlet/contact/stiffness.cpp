@@ -1,5 +1,7 @@
 #include "ringlet/contact/stiffness.h"
 
+#include "ringlet/math/parallel.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -24,8 +26,8 @@ bool ContactStiffness::raise_loads(const ContactSet &contacts) {
 void ContactStiffness::set_levels(const CollisionMesh &mesh, ContactMaterial &material) const {
     material.stiffness = material.firm_stiffness = largest_;
     const int strand_vertices = int(mesh.along_curve.size());
-    for (int v = 0; v < strand_vertices; ++v) {
-        if (!mesh.moves[v]) continue;
+    parallel_for(strand_vertices, [&](int v) {
+        if (!mesh.moves[v]) return;
         double load = load_[v]; // a contact that slides passes on to the next vertex
         for (const int next : {v - 1, v + 1})
             if (next >= 0 && next < strand_vertices && mesh.object[next] == mesh.object[v]) load = std::max(load, load_[next]);
@@ -34,7 +36,7 @@ void ContactStiffness::set_levels(const CollisionMesh &mesh, ContactMaterial &ma
         while (enough < load / d_hat && enough < largest_[v]) enough *= contact_settings::level_factor;
         material.stiffness[v] = std::min(enough, largest_[v]);
         material.firm_stiffness[v] = std::max(material.stiffness[v], contact_settings::firm_level * largest_[v]);
-    }
+    });
 }
 
 } // namespace ringlet

@@ -9,8 +9,7 @@ void Bvh::arrange(std::vector<Centre> &centres) {
     depth_ = 0;
     while (count_ > int64_t(4) << depth_) ++depth_;
     for (int depth = 0; depth < depth_; ++depth) {
-#pragma omp parallel for schedule(dynamic, 1) if (count_ > bvh_settings::serial_nodes)
-        for (int group = 0; group < 1 << depth; ++group) {
+        parallel_chunks(1 << depth, 1, [&](int group) {
             const auto first = centres.begin() + begin(group, depth), last = centres.begin() + begin(group + 1, depth);
             Eigen::Array3f low = Eigen::Array3f::Constant(std::numeric_limits<float>::infinity()), high = -low;
             for (auto c = first; c != last; ++c) {
@@ -23,7 +22,7 @@ void Bvh::arrange(std::vector<Centre> &centres) {
             std::nth_element(first, middle, last, [&](const Centre &a, const Centre &b) {
                 return a.at[axis] != b.at[axis] ? a.at[axis] < b.at[axis] : a.primitive < b.primitive;
             });
-        }
+        });
     }
 
     first_leaf_ = 0;

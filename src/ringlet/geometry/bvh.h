@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ringlet/geometry/swept_box.h"
+#include "ringlet/math/parallel.h"
 
 #include <algorithm>
 #include <array>
@@ -110,13 +111,11 @@ template <class Box> void Bvh::refit_leaf(int leaf, const Box &box) {
 
 template <class Box> void Bvh::refit_all(const Box &box) {
     int first = first_leaf_, count = leaves();
-#pragma omp parallel for schedule(static) if (count_ > bvh_settings::serial_nodes)
-    for (int leaf = first; leaf < first + count; ++leaf) refit_leaf(leaf, box);
+    parallel_for(count, bvh_settings::serial_nodes, [&](int k) { refit_leaf(first + k, box); });
     while (first > 1) { // level by level
         first = (first - 1) / 4;
         count /= 4;
-#pragma omp parallel for schedule(static) if (count > bvh_settings::serial_nodes)
-        for (int node = first; node < first + count; ++node) set(node, union_of(node));
+        parallel_for(count, bvh_settings::serial_nodes, [&](int k) { set(first + k, union_of(first + k)); });
     }
 }
 
@@ -171,8 +170,7 @@ template <class Box> void Bvh::refit(View<int> primitives, const Box &box) {
     std::vector<int> leaves;
     for (const int i : primitives)
         if (!listed_[leaf_of_[i]]) listed_[leaf_of_[i]] = 1, leaves.push_back(leaf_of_[i]);
-#pragma omp parallel for schedule(static) if (int(leaves.size()) > bvh_settings::serial_nodes)
-    for (size_t k = 0; k < leaves.size(); ++k) refit_leaf(leaves[k], box);
+    parallel_for(int(leaves.size()), bvh_settings::serial_nodes, [&](int k) { refit_leaf(leaves[k], box); });
     refit_above(leaves);
 }
 

@@ -1,5 +1,7 @@
 #include "ringlet/linear/block_matrix.h"
 
+#include "ringlet/math/parallel.h"
+
 #include <algorithm>
 
 namespace ringlet {
@@ -33,12 +35,11 @@ void BlockMatrix::set_zero() { std::fill(blocks_.begin(), blocks_.end(), Mat3::Z
 void BlockMatrix::multiply(const Eigen::VectorXd &x, Eigen::VectorXd &y) const {
     y.resize(x.size());
     const int least_parallel_rows = 2000; // below, starting threads takes longer than they save
-#pragma omp parallel for schedule(static) if (rows() > least_parallel_rows)
-    for (int i = 0; i < rows(); ++i) {
+    parallel_for(rows(), least_parallel_rows, [&](int i) {
         Vec3 sum = Vec3::Zero();
         for (int s = starts_[i]; s < starts_[i + 1]; ++s) sum.noalias() += blocks_[s] * x.segment<3>(3 * columns_[s]);
         y.segment<3>(3 * i) = sum;
-    }
+    });
 }
 
 ScalarRows BlockMatrix::scalar_rows() const {

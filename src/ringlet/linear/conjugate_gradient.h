@@ -14,11 +14,8 @@ struct ConjugateGradientResult {
 };
 
 // Improves x, whose residual b − A x is r. A System has Unknowns and Residuals, and numbers of each of its clusters():
-//   multiply(p, Ap, busy)       Ap = A p; returns p · A p
-//   precondition(r, z, busy)    z ≈ A⁻¹ r, symmetric positive definite; returns r · z
-//   add(a, p, x, busy)          x += a p
-//   subtract(a, Ap, r, busy)    r −= a A p
-//   extend(z, b, p, busy)       p = z + b p
+//   extend(z, b, p, Ap, busy)        p = z + b p, Ap = A p; returns p · A p
+//   advance(a, p, Ap, x, r, z, busy) x += a p, r −= a A p, z ≈ A⁻¹ r, symmetric positive definite; returns r · z
 // unconverged(iterations, r · z, decreases) returns which clusters are busy; the decreases are those of xᵀA x − 2 bᵀx in the
 // last iteration. Where the curvature p · A p is not positive, a cluster keeps its x, and its r · z becomes 0.
 template <class System, class Unconverged>
@@ -28,17 +25,14 @@ ConjugateGradientResult conjugate_gradient(System &system, typename System::Resi
     std::vector<unsigned char> busy(clusters, 1);
     typename System::Residual Ap = r;
     typename System::Unknowns z = x, p = x;
-    std::vector<double> rz = system.precondition(r, z, busy), alpha(clusters, 0.0), beta(clusters, 0.0),
-                        decrease(clusters, 0.0);
+    std::vector<double> alpha(clusters, 0.0), beta(clusters, 0.0), decrease(clusters, 0.0);
+    std::vector<double> rz = system.advance(alpha, p, Ap, x, r, z, busy);
     for (int iterations = 0;; ++iterations) {
         busy = unconverged(iterations, rz, decrease);
         if (std::count(busy.begin(), busy.end(), 1) == 0) return {iterations, rz};
-        system.extend(z, beta, p, busy);
-        const std::vector<double> curvature = system.multiply(p, Ap, busy);
+        const std::vector<double> curvature = system.extend(z, beta, p, Ap, busy);
         for (size_t c = 0; c < clusters; ++c) alpha[c] = busy[c] && curvature[c] > 0.0 ? rz[c] / curvature[c] : 0.0;
-        system.add(alpha, p, x, busy);
-        system.subtract(alpha, Ap, r, busy);
-        const std::vector<double> next = system.precondition(r, z, busy);
+        const std::vector<double> next = system.advance(alpha, p, Ap, x, r, z, busy);
         for (size_t c = 0; c < clusters; ++c) {
             decrease[c] = alpha[c] * rz[c];
             beta[c] = busy[c] && rz[c] > 0.0 ? next[c] / rz[c] : 0.0;

@@ -2,6 +2,7 @@
 
 #include "ringlet/ccd/advected_move.h"
 #include "ringlet/math/disjoint_sets.h"
+#include "ringlet/math/parallel.h"
 #include "ringlet/scene/prescribed_motion.h"
 #include "ringlet/scene/settings.h"
 
@@ -39,13 +40,12 @@ std::vector<Vec3> advected_rigidly(const PrescribedMotion &motion, const Carrier
         for (int v = first; v < last; ++v)
             if (all.mesh.moves[v]) end[v] = by(motion.start[v]);
     };
-#pragma omp parallel for schedule(static)
-    for (int s = 0; s < all.strands; ++s) {
+    parallel_for(all.strands, [&](int s) {
         const auto [first, last, whole] = all.mesh.objects[s];
         const int body = s < int(carriers.of_strands.size()) ? carriers.of_strands[s] : -1;
         const int leader = follows_body(body, first, last) ? leaders[body] : first;
         move(first, last, [&](const Vec3 &point) { return motion.carry(leader, point); });
-    }
+    });
     for (int c = 0; c + 1 < int(all.cloths.size()); ++c) {
         const int first = all.cloths[c], last = all.cloths[c + 1], body = carriers.of_cloths[c];
         if (follows_body(body, first, last)) {
@@ -101,8 +101,7 @@ public:
             if (added.empty()) added = surfaces_with_impact(may_wait, dented);
             if (added.empty()) return;
             move_.round([&](const std::vector<Impact> &) {
-#pragma omp parallel for schedule(static)
-                for (const int v : added) end_[v] = mapped(map, v);
+                parallel_for(int(added.size()), [&](int k) { end_[added[k]] = mapped(map, added[k]); });
             });
             join_islands();
         }

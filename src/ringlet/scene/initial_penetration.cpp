@@ -1,6 +1,7 @@
 #include "ringlet/scene/initial_penetration.h"
 
 #include "ringlet/geometry/triangle_tree.h"
+#include "ringlet/math/parallel.h"
 #include "ringlet/scene/settings.h"
 
 #include <algorithm>
@@ -54,8 +55,7 @@ std::vector<RecoverySpring> InitialPenetration::recover(CollisionMesh &mesh, Vie
             TriangleMesh{positions.subspan(bodies_[b].first, bodies_[b].count), View<Triangle>(bodies_[b].triangles)});
     std::vector<unsigned char> outside(vertices_.size(), 0);
     std::vector<RecoverySpring> springs(vertices_.size());
-#pragma omp parallel for schedule(dynamic, 16)
-    for (int k = 0; k < int(vertices_.size()); ++k) {
+    parallel_chunks(int(vertices_.size()), 16, [&](int k) {
         const int v = vertices_[k].vertex;
         const Body &body = bodies_[vertices_[k].body];
         const Surface &surface = *surfaces[vertices_[k].body];
@@ -75,7 +75,7 @@ std::vector<RecoverySpring> InitialPenetration::recover(CollisionMesh &mesh, Vie
         double &height_wanted = vertices_[k].height;
         height_wanted = std::min(std::max(height_wanted, height) + length, touching);
         springs[k] = {v, outward, outward.dot(positions[v]) + height_wanted - height, stiffness[v]};
-    }
+    });
     end_exemptions([&](size_t k) { return outside[k] != 0; }, mesh);
     size_t k = 0;
     std::erase_if(springs, [&](const RecoverySpring &) { return outside[k++] != 0; });

@@ -1,5 +1,6 @@
 // How a step of a scene goes: advect with bodies → limit → { contacts → assemble → solve → limit → line search → accept } →
 // commit. The braces are Newton's method, in solver/newton.cpp.
+#include "ringlet/math/parallel.h"
 #include "ringlet/scene/advection.h"
 #include "ringlet/scene/data.h"
 #include "ringlet/scene/settings.h"
@@ -135,6 +136,7 @@ void commit(SceneData &scene, View<Vec3> start, double dt, const SolverEffort &e
 } // namespace
 
 SceneReport take_step(SceneData &scene, const SceneInput &input, const SceneStep &settings) {
+    const LoopRecorder::Step recorded;
     SceneReport report{};
     const StrandStep &step = settings.strands;
     if (!scene.begun) find_initial_contacts(scene, step.dt);

@@ -53,14 +53,13 @@ std::vector<unsigned char> BlockSet::blocks_with(const std::vector<unsigned char
 }
 
 void BlockSet::gather(const AlignedVector &x, std::vector<Vec3> &positions) const {
-#pragma omp parallel for schedule(static)
-    for (int v = 0; v < table_.dynamic_vertices; ++v) positions[v] = position(x, v);
+    parallel_for(table_.dynamic_vertices, [&](int v) { positions[v] = position(x, v); });
 }
 
 void BlockSet::scatter(View<Vec3> positions, AlignedVector &x) const {
-#pragma omp parallel for schedule(static)
-    for (int v = 0; v < table_.dynamic_vertices; ++v)
+    parallel_for(table_.dynamic_vertices, [&](int v) {
         for (int k = 0; k < 3; ++k) x[slots_[v].first + k * slots_[v].stride] = positions[v][k];
+    });
 }
 
 void BlockSet::to_lanes(int block, const std::vector<double> &of_objects, double *of_lanes) const {

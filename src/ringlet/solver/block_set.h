@@ -3,6 +3,7 @@
 
 #include "ringlet/linear/lane_vectors.h"
 #include "ringlet/math/aligned.h"
+#include "ringlet/math/parallel.h"
 #include "ringlet/solver/block.h"
 #include "ringlet/solver/vertex_table.h"
 
@@ -36,20 +37,25 @@ public:
     std::vector<unsigned char> blocks_with(const std::vector<unsigned char> &objects) const;
 
     // Calls work(block) for the active ones: the small in parallel, forwards or backwards, then those that are parallel inside.
-    template <class Work> void for_active(const Work &work, bool backwards = false) const {
+    template <class Work> void for_active(const Work &work, bool backwards = false, LoopSite site = LoopSite::here()) const {
         const int small = int(small_.size());
-#pragma omp parallel for schedule(dynamic)
-        for (int k = 0; k < small; ++k)
-            if (const int b = small_[backwards ? small - 1 - k : k]; active_[b]) work(b);
+        parallel_chunks(
+            small, 1,
+            [&](int k) {
+                if (const int b = small_[backwards ? small - 1 - k : k]; active_[b]) work(b);
+            },
+            site);
         for (const int b : large_)
             if (active_[b]) work(b);
     }
 
     // Calls work(object) for those of the active blocks, in parallel.
-    template <class Work> void for_active_objects(const Work &work) const {
-        for_active([&](int b) {
-            for (const BlockObject &object : blocks_[b]->objects()) work(object);
-        });
+    template <class Work> void for_active_objects(const Work &work, LoopSite site = LoopSite::here()) const {
+        for_active(
+            [&](int b) {
+                for (const BlockObject &object : blocks_[b]->objects()) work(object);
+            },
+            false, site);
     }
 
     // Vectors of all unknowns.

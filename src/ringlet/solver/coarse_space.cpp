@@ -54,26 +54,33 @@ void CoarseSpace::find_forces() {
     aggregate();
     if (empty()) return;
     const Couplings &couplings = objective_.couplings;
-    forces_.assign(couplings.count(), Columns::Zero());
-    responses_.assign(couplings.count(), Columns::Zero());
-    for (const Couplings::Coupling &coupling : couplings.all()) {
-        const Mat3 &hessian = objective_.pair_values()[coupling.pair].hessian;
-        for (int side = 0; side < 2; ++side) {
-            const int object = coupling.objects[side];
-            if (!has(object)) continue;
+    const int count = int(couplings.all().size());
+    amounts_.resize(count);
+    parallel_for(count, [&](int k) {
+        const Couplings::Coupling &coupling = couplings.all()[k];
+        amounts_[k] = {};
+        for (int i = 0; i < 4; ++i) {
+            const int side = i >= coupling.first ? 1 : 0, object = coupling.objects[side];
+            if (coupling.point[i] < 0 || !has(object)) continue;
             const BlockObject &of = objective_.blocks.of_object(object).objects()[objective_.blocks.lane_of(object)];
-            std::array<double, shapes> amounts{};
-            const int begin = side == 0 ? 0 : coupling.first, end = side == 0 ? coupling.first : 4;
-            for (int i = begin; i < end; ++i)
-                if (coupling.point[i] >= 0)
-                    for (int k = 0; k < shapes; ++k)
-                        amounts[k] += coupling.weight[i] * shapes_at(couplings.vertex(coupling.point[i]), of)[k];
-            for (int i = begin; i < end; ++i)
-                if (coupling.point[i] >= 0)
-                    for (int k = 0; k < shapes; ++k)
-                        forces_[coupling.point[i]].template middleCols<3>(3 * k) += coupling.weight[i] * amounts[k] * hessian;
+            const std::array<double, shapes> at = shapes_at(couplings.vertex(coupling.point[i]), of);
+            for (int shape = 0; shape < shapes; ++shape) amounts_[k][side][shape] += coupling.weight[i] * at[shape];
         }
-    }
+    });
+    forces_.resize(couplings.count());
+    responses_.resize(couplings.count());
+    parallel_for(couplings.count(), [&](int point) {
+        Columns force = Columns::Zero();
+        responses_[point].setZero();
+        for (const Couplings::Role &role : couplings.roles(point)) {
+            const Couplings::Coupling &coupling = couplings.all()[role.coupling];
+            const Mat3 &hessian = objective_.pair_values()[coupling.pair].hessian;
+            const std::array<double, shapes> &amounts = amounts_[role.coupling][role.as >= coupling.first ? 1 : 0];
+            for (int shape = 0; shape < shapes; ++shape)
+                force.template middleCols<3>(3 * shape) += coupling.weight[role.as] * amounts[shape] * hessian;
+        }
+        forces_[point] = force;
+    });
 }
 
 // Objects of exact blocks that something couples, by cluster. Where each touches many, E would fill up as it is factored: there
@@ -81,54 +88,55 @@ void CoarseSpace::find_forces() {
 void CoarseSpace::aggregate() {
     const BlockSet &blocks = objective_.blocks;
     const Couplings &couplings = objective_.couplings;
-    const int objects = blocks.objects();
+    const int objects = blocks.objects(), count = int(couplings.all().size());
     clear();
     const auto takes_part = [&](int object) {
         return couplings.couples(object) && blocks.is_active(object) && blocks.of_object(object).is_exact();
     };
-    std::vector<std::pair<int, int>> pairs; // of objects
-    for (const Couplings::Coupling &coupling : couplings.all())
-        pairs.emplace_back(std::minmax(coupling.objects[0], coupling.objects[1]));
-    std::sort(pairs.begin(), pairs.end());
-    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-    std::vector<double> ends(objects, 0.0); // of pairs, per cluster
-    for (const auto &[a, b] : pairs) ends[couplings.clusters()[a]] += 2.0;
-
-    const Lists<int> members(objects, [&](const auto &add) {
-        for (int object = 0; object < objects; ++object)
-            if (takes_part(object)) add(couplings.clusters()[object], object);
+    const Lists<int> touched(objects, count, [&](int k, const auto &add) { // of each object, more than once
+        const auto [a, b] = couplings.all()[k].objects;
+        add(a, b), add(b, a);
     });
+    std::vector<double> neighbours(objects); // of each object, then of all of a cluster
+    parallel_for(objects, [&](int object) {
+        std::vector<int> others(touched.of(object).begin(), touched.of(object).end());
+        std::sort(others.begin(), others.end());
+        neighbours[object] = double(std::unique(others.begin(), others.end()) - others.begin());
+    });
+    for (int object = 0; object < objects; ++object)
+        if (const int first = couplings.clusters()[object]; first != object) neighbours[first] += neighbours[object];
+
+    const Lists<int> members(objects, objects, [&](int object, const auto &add) {
+        if (takes_part(object)) add(couplings.clusters()[object], object);
+    });
+    std::vector<size_t> together(objects, 1); // objects that share columns, of each cluster
+    for (int cluster = 0; cluster < objects; ++cluster)
+        for (const auto &[above, size] : solver_settings::aggregate_sizes)
+            if (neighbours[cluster] > above * double(members.of(cluster).size())) together[cluster] = size;
     std::vector<Vec3> centres(objects, Vec3::Zero());
+    parallel_for(objects, [&](int object) {
+        if (!takes_part(object) || together[couplings.clusters()[object]] == 1) return;
+        const BlockObject &place = blocks.of_object(object).objects()[blocks.lane_of(object)];
+        for (int v = place.first; v < place.end; ++v)
+            centres[object] += objective_.position(v) / double(place.end - place.first);
+    });
     for (int cluster = 0; cluster < objects; ++cluster) {
         const View<int> of = members.of(cluster);
         if (of.size() < solver_settings::least_cluster) continue;
         in_cluster_[cluster] = 1;
         const int first = aggregates_;
-        const double neighbours = ends[cluster] / double(of.size());
-        size_t most = 1;
-        for (const auto &[above, size] : solver_settings::aggregate_sizes)
-            if (neighbours > above) most = size;
-        if (most > 1)
-            for (const int object : of) {
-                const BlockObject &place = blocks.of_object(object).objects()[blocks.lane_of(object)];
-                for (int v = place.first; v < place.end; ++v)
-                    centres[object] += objective_.position(v) / double(place.end - place.first);
-            }
-        bisect({of.begin(), of.end()}, centres, most, [&](const std::vector<int> &part) {
+        bisect({of.begin(), of.end()}, centres, together[cluster], [&](const std::vector<int> &part) {
             for (const int object : part) aggregate_[object] = aggregates_;
             ++aggregates_;
         });
         clusters_.push_back({first, aggregates_, false, {}});
     }
-    points_ = {size_t(aggregates_), [&](const auto &add) {
-                   for (int point = 0; point < couplings.count(); ++point)
-                       if (const int a = aggregate_[couplings.object(point)]; a >= 0) add(a, point);
+    points_ = {size_t(aggregates_), couplings.count(), [&](int point, const auto &add) {
+                   if (const int a = aggregate_[couplings.object(point)]; a >= 0) add(a, point);
                }};
-    couplings_ = {size_t(aggregates_), [&](const auto &add) {
-                      for (int k = 0; k < int(couplings.all().size()); ++k) {
-                          const auto [a, b] = couplings.all()[k].objects;
-                          if (has(a) && has(b)) add(std::max(aggregate_[a], aggregate_[b]), k);
-                      }
+    couplings_ = {size_t(aggregates_), count, [&](int k, const auto &add) {
+                      const auto [a, b] = couplings.all()[k].objects;
+                      if (has(a) && has(b)) add(std::max(aggregate_[a], aggregate_[b]), k);
                   }};
 }
 
@@ -184,10 +192,8 @@ CoarseSpace::Row CoarseSpace::row(int a) const {
 
 void CoarseSpace::factor() {
     std::vector<Row> rows(aggregates_);
-#pragma omp parallel for schedule(dynamic, 16)
-    for (int a = 0; a < aggregates_; ++a) rows[a] = row(a);
-#pragma omp parallel for schedule(dynamic) if (clusters_.size() > 1)
-    for (int c = 0; c < int(clusters_.size()); ++c) {
+    parallel_chunks(aggregates_, 16, [&](int a) { rows[a] = row(a); });
+    parallel_chunks(int(clusters_.size()), 1, [&](int c) {
         Cluster &cluster = clusters_[c];
         std::vector<Factor::Block> diagonal;
         std::vector<Factor::Entry> below;
@@ -197,18 +203,17 @@ void CoarseSpace::factor() {
                 below.push_back({{at[0] - cluster.first, at[1] - cluster.first}, block});
         }
         cluster.is_definite = cluster.factor.factor(diagonal, below);
-    }
+    });
 }
 
 void CoarseSpace::solve() {
-#pragma omp parallel for schedule(dynamic) if (clusters_.size() > 1)
-    for (int c = 0; c < int(clusters_.size()); ++c) {
+    parallel_chunks(int(clusters_.size()), 1, [&](int c) {
         const Cluster &cluster = clusters_[c];
         if (cluster.is_definite)
             cluster.factor.solve(coefficients_.data() + cluster.first);
         else
             std::fill(coefficients_.begin() + cluster.first, coefficients_.begin() + cluster.end, Coefficients::Zero());
-    }
+    });
 }
 
 } // namespace ringlet

@@ -36,19 +36,28 @@ public:
     bool covers(int cluster) const { return !in_cluster_.empty() && in_cluster_[cluster]; }
     bool empty() const { return aggregates_ == 0; }
 
-    // z += Z E⁻¹ Zᵀ r, and P z likewise; r is given at the points by a function, the others as vectors of all points.
-    template <class AtPoint> void add_correction(const AtPoint &r, std::vector<Vec3> &z, std::vector<Vec3> &Pz) {
-        coefficients_.assign(aggregates_, Coefficients::Zero());
-#pragma omp parallel for schedule(static)
-        for (int a = 0; a < aggregates_; ++a)
-            for (const int point : points_.of(a)) coefficients_[a].noalias() += responses_[point].transpose() * r(point);
+    // E⁻¹ Zᵀ r; r is given at the points by a function.
+    template <class AtPoint> void find_coefficients(const AtPoint &r, LoopSite site = LoopSite::here()) {
+        coefficients_.resize(aggregates_);
+        parallel_for(
+            aggregates_,
+            [&](int a) {
+                Coefficients sum = Coefficients::Zero();
+                for (const int point : points_.of(a)) sum.noalias() += responses_[point].transpose() * r(point);
+                coefficients_[a] = sum;
+            },
+            site);
         solve();
-#pragma omp parallel for schedule(static)
-        for (int a = 0; a < aggregates_; ++a)
-            for (const int point : points_.of(a)) {
-                z[point] += responses_[point] * coefficients_[a];
-                Pz[point] += forces_[point] * coefficients_[a];
-            }
+    }
+    // z += Z E⁻¹ Zᵀ r at the points of a block, and P z likewise.
+    void add_correction(int block, std::vector<Vec3> &z, std::vector<Vec3> &Pz) const {
+        const Couplings &couplings = objective_.couplings;
+        for (int point = couplings.begin(block); point < couplings.end(block); ++point) {
+            const int a = aggregate_[couplings.object(point)];
+            if (a < 0) continue;
+            z[point] += responses_[point] * coefficients_[a];
+            Pz[point] += forces_[point] * coefficients_[a];
+        }
     }
 
 private:
@@ -71,10 +80,11 @@ private:
     std::vector<int> aggregate_;            // per object; −1: it has no part
     std::vector<unsigned char> in_cluster_; // per cluster, by its first object: whether some of it has
     std::vector<Cluster> clusters_;
-    Lists<int> points_;                       // of each aggregate
-    Lists<int> couplings_;                    // of the aggregate with the larger number
-    std::vector<Columns> forces_, responses_; // per point
-    std::vector<Coefficients> coefficients_;  // per aggregate
+    Lists<int> points_;                                              // of each aggregate
+    Lists<int> couplings_;                                           // of the aggregate with the larger number
+    std::vector<std::array<std::array<double, shapes>, 2>> amounts_; // per coupling: of the shapes at the ends of its sides
+    std::vector<Columns> forces_, responses_;                        // per point
+    std::vector<Coefficients> coefficients_;                         // per aggregate
 };
 
 } // namespace ringlet

@@ -16,27 +16,26 @@ auto flat(const std::vector<Vec3> &points, int first, int end) {
 
 CoupledSystem::CoupledSystem(Objective &objective) : objective_(objective), coarse_(objective) {}
 
-// Calls work(block) for those with busy objects.
-template <class Work> void CoupledSystem::for_busy(const Mask &busy, const Work &work, bool backwards) const {
-    const Mask blocks = objective_.blocks.blocks_with(busy);
+template <class Work>
+void CoupledSystem::for_blocks(const Mask &blocks, const Work &work, bool backwards, LoopSite site) const {
     objective_.blocks.for_active(
         [&](int b) {
             if (blocks[b]) work(b);
         },
-        backwards);
+        backwards, site);
 }
 
-// Calls work(object, first point, their end) for the objects of blocks with busy ones.
-template <class Work> void CoupledSystem::for_objects(const Mask &busy, const Work &work) const {
-    for_busy(busy, [&](int b) {
-        for (const BlockObject &object : objective_.blocks[b].objects())
-            if (const auto [first, end] = objective_.couplings.of_object(object.number); first < end)
-                work(object.number, first, end);
-    });
+template <class Work> void CoupledSystem::for_objects(int b, const Work &work) const {
+    for (const BlockObject &object : objective_.blocks[b].objects())
+        if (const auto [first, end] = objective_.couplings.of_object(object.number); first < end)
+            work(object.number, first, end);
 }
 
 void CoupledSystem::begin() {
-    for (Numbers *numbers : {&alone_products_, &rz_, &pPp_, &bd_}) numbers->assign(clusters(), 0.0);
+    for (Numbers *numbers : {&alone_products_, &rz_, &pAp_, &bd_}) numbers->assign(clusters(), 0.0);
+    joint_.clear();
+    for (int object = 0; object < int(clusters()); ++object)
+        if (!objective_.is_alone(object)) joint_.push_back(object);
     if (alone_.size() != objective_.blocks.size()) alone_ = AlignedVector(objective_.blocks.size());
     coarse_.find_forces();
 }
@@ -75,12 +74,11 @@ AlignedVector CoupledSystem::solve(int b, const std::vector<Vec3> &at_points) co
 
 void CoupledSystem::first_iterate(Residual &r, Unknowns &x) {
     Couplings &couplings = objective_.couplings;
-    const Mask all(clusters(), 1);
+    const Mask all(clusters(), 1), blocks = blocks_with(all);
     const std::vector<Vec3> zero(couplings.count(), Vec3::Zero());
-    Numbers unused(clusters(), 0.0);
     r = zero, x = {zero, zero};
     std::vector<Vec3> d = zero;
-    for_busy(all, [&](int b) {
+    for_blocks(blocks, [&](int b) {
         for (int k = couplings.begin(b); k < couplings.end(b); ++k) {
             if (is_exact(b))
                 d[k] = at(k, b, objective_.blocks.of(b, alone_));
@@ -88,18 +86,20 @@ void CoupledSystem::first_iterate(Residual &r, Unknowns &x) {
                 r[k] = -at(k, b, objective_.blocks[b].gradient());
         }
     });
-    couplings.multiply(d, objective_.pair_values(), all, unused);
-    for_objects(all, [&](int, int first, int end) {
-        for (int k = first; k < end; ++k) r[k] -= couplings.product(k);
+    couplings.multiply(d, objective_.pair_values(), all);
+    for_blocks(blocks, [&](int b) {
+        for (int k = couplings.begin(b); k < couplings.end(b); ++k) r[k] -= couplings.product(k);
     });
     if (!coarse_.empty()) {
-        const Numbers whole(clusters(), 1.0);
-        Unknowns joint{zero, zero};
+        Unknowns joint{zero, zero}, unused{zero, zero};
         Residual forces = zero;
-        coarse_.add_correction([&](int k) { return r[k]; }, joint.at, joint.force);
-        multiply(joint, forces, all);
-        add(whole, joint, x, all);
-        subtract(whole, forces, r, all);
+        coarse_.find_coefficients([&](int k) { return r[k]; });
+        for_blocks(blocks, [&](int b) { coarse_.add_correction(b, joint.at, joint.force); });
+        extend(joint, Numbers(clusters(), 0.0), unused, forces, all);
+        for_blocks(blocks, [&](int b) {
+            for (int k = couplings.begin(b); k < couplings.end(b); ++k)
+                x.at[k] = joint.at[k], x.force[k] = joint.force[k], r[k] -= forces[k];
+        });
     }
     backwards_ = false;
 }
@@ -119,22 +119,34 @@ void CoupledSystem::solution(const Unknowns &x, AlignedVector &d) {
     });
 }
 
-CoupledSystem::Numbers CoupledSystem::multiply(Unknowns &p, Residual &Ap, const Mask &busy) {
+CoupledSystem::Numbers CoupledSystem::extend(const Unknowns &z, const Numbers &beta, Unknowns &p, Residual &Ap,
+                                             const Mask &busy) {
     Couplings &couplings = objective_.couplings;
-    for_busy(busy, [&](int b) {
+    const Mask blocks = blocks_with(busy);
+    for_blocks(blocks, [&](int b) {
+        for_objects(b, [&](int object, int first, int end) {
+            const double of_old = beta[cluster(object)];
+            flat(p.at, first, end) = flat(z.at, first, end) + of_old * flat(p.at, first, end);
+            flat(p.force, first, end) = flat(z.force, first, end) + of_old * flat(p.force, first, end);
+        });
         if (const int first = couplings.begin(b); !is_exact(b)) {
             flat(p.force, first, couplings.end(b)).setZero();
             objective_.blocks[b].multiply_add(p.at[first].data(), p.force[first].data());
         }
-        set_products(b, p.at, p.force, pPp_);
     });
-    Numbers curvature = of_clusters(pPp_);
-    couplings.multiply(p.at, objective_.pair_values(), busy, curvature);
-    for_objects(busy, [&](int object, int first, int end) {
-        flat(Ap, first, end) = flat(p.force, first, end);
-        for (int k = first; k < end && couplings.couples(object); ++k) Ap[k] += couplings.product(k);
+    couplings.multiply(p.at, objective_.pair_values(), busy);
+    for_blocks(blocks, [&](int b) {
+        for_objects(b, [&](int object, int first, int end) {
+            double curvature = 0.0;
+            for (int k = first; k < end; ++k) {
+                Ap[k] = p.force[k];
+                if (couplings.couples(object)) Ap[k] += couplings.product(k);
+                curvature += p.at[k].dot(Ap[k]);
+            }
+            pAp_[object] = curvature;
+        });
     });
-    return curvature;
+    return of_clusters(pAp_);
 }
 
 void CoupledSystem::precondition_block(int b, const Residual &r, Unknowns &z) const {
@@ -151,71 +163,55 @@ void CoupledSystem::precondition_block(int b, const Residual &r, Unknowns &z) co
 
 // After the blocks the coarse space, so that the iteration does not return to its motions (A-DEF2: Tang et al. 2009).
 // Alternating directions reuse the factors that are still in the cache.
-CoupledSystem::Numbers CoupledSystem::precondition(const Residual &r, Unknowns &z, const Mask &busy) {
+CoupledSystem::Numbers CoupledSystem::advance(const Numbers &alpha, const Unknowns &p, const Residual &Ap, Unknowns &x,
+                                              Residual &r, Unknowns &z, const Mask &busy) {
     Couplings &couplings = objective_.couplings;
+    const Mask blocks = blocks_with(busy);
     backwards_ = !backwards_;
-    for_busy(busy, [&](int b) { precondition_block(b, r, z); }, backwards_);
+    for_blocks(
+        blocks,
+        [&](int b) {
+            for_objects(b, [&](int object, int first, int end) {
+                const double of_step = alpha[cluster(object)];
+                flat(x.at, first, end) += of_step * flat(p.at, first, end);
+                flat(x.force, first, end) += of_step * flat(p.force, first, end);
+                flat(r, first, end) -= of_step * flat(Ap, first, end);
+                bd_[object] = work_of(b, object, x);
+            });
+            precondition_block(b, r, z);
+        },
+        backwards_);
     if (!coarse_.empty()) {
-        Numbers unused(clusters(), 0.0);
-        couplings.multiply(z.at, objective_.pair_values(), busy, unused);
-        coarse_.add_correction([&](int k) { return Vec3(-couplings.product(k)); }, z.at, z.force);
+        couplings.multiply(z.at, objective_.pair_values(), busy);
+        coarse_.find_coefficients([&](int k) { return Vec3(-couplings.product(k)); });
     }
-    for_busy(busy, [&](int b) { set_products(b, r, z.at, rz_); });
+    for_blocks(blocks, [&](int b) {
+        if (!coarse_.empty()) coarse_.add_correction(b, z.at, z.force);
+        for_objects(b, [&](int object, int first, int end) {
+            double product = 0.0;
+            for (int k = first; k < end; ++k) product += r[k].dot(z.at[k]);
+            rz_[object] = product;
+        });
+    });
     return of_clusters(rz_);
 }
 
-void CoupledSystem::add(const Numbers &alpha, const Unknowns &p, Unknowns &x, const Mask &busy) const {
-    for_objects(busy, [&](int object, int first, int end) {
-        const double a = alpha[cluster(object)];
-        flat(x.at, first, end) += a * flat(p.at, first, end);
-        flat(x.force, first, end) += a * flat(p.force, first, end);
-    });
-}
-
-void CoupledSystem::subtract(const Numbers &alpha, const Residual &Ap, Residual &r, const Mask &busy) const {
-    for_objects(busy,
-                [&](int object, int first, int end) { flat(r, first, end) -= alpha[cluster(object)] * flat(Ap, first, end); });
-}
-
-void CoupledSystem::extend(const Unknowns &z, const Numbers &beta, Unknowns &p, const Mask &busy) const {
-    for_objects(busy, [&](int object, int first, int end) {
-        const double b = beta[cluster(object)];
-        flat(p.at, first, end) = flat(z.at, first, end) + b * flat(p.at, first, end);
-        flat(p.force, first, end) = flat(z.force, first, end) + b * flat(p.force, first, end);
-    });
-}
-
-CoupledSystem::Numbers CoupledSystem::work(const Unknowns &x, const Mask &busy) {
-    for_busy(busy, [&](int b) {
-        const double *const alone = objective_.blocks.of(b, alone_);
-        for (const BlockObject &object : objective_.blocks[b].objects()) {
-            const auto [first, end] = objective_.couplings.of_object(object.number);
-            double &bd = bd_[object.number];
-            if (!is_exact(b)) {
-                const Eigen::Map<const Eigen::VectorXd> gradient(objective_.blocks[b].gradient(), 3 * (end - first));
-                bd = -gradient.dot(flat(x.at, first, end));
-            } else {
-                bd = alone_products_[object.number];
-                for (int k = first; k < end; ++k) bd += at(k, b, alone).dot(x.force[k]);
-            }
-        }
-    });
-    return of_clusters(bd_);
-}
-
-void CoupledSystem::set_products(int b, const std::vector<Vec3> &x, const std::vector<Vec3> &y, Numbers &of_objects) const {
-    for (const BlockObject &object : objective_.blocks[b].objects()) {
-        const auto [first, end] = objective_.couplings.of_object(object.number);
-        double sum = 0.0;
-        for (int k = first; k < end; ++k) sum += x[k].dot(y[k]);
-        of_objects[object.number] = sum;
+// b · d of an object.
+double CoupledSystem::work_of(int b, int object, const Unknowns &x) const {
+    const auto [first, end] = objective_.couplings.of_object(object);
+    if (!is_exact(b)) {
+        const Eigen::Map<const Eigen::VectorXd> gradient(objective_.blocks[b].gradient(), 3 * (end - first));
+        return -gradient.dot(flat(x.at, first, end));
     }
+    const double *const alone = objective_.blocks.of(b, alone_);
+    double sum = alone_products_[object];
+    for (int k = first; k < end; ++k) sum += at(k, b, alone).dot(x.force[k]);
+    return sum;
 }
 
 CoupledSystem::Numbers CoupledSystem::of_clusters(const Numbers &of_objects) const {
     Numbers sums(of_objects.size(), 0.0);
-    for (size_t object = 0; object < sums.size(); ++object)
-        if (!objective_.is_alone(int(object))) sums[objective_.couplings.clusters()[object]] += of_objects[object];
+    for (const int object : joint_) sums[cluster(object)] += of_objects[object];
     return sums;
 }
 

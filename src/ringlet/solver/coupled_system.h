@@ -34,35 +34,38 @@ public:
     void solution(const Unknowns &x, AlignedVector &d);
 
     size_t clusters() const { return size_t(objective_.table.objects); }
-    Numbers multiply(Unknowns &p, Residual &Ap, const Mask &busy);
-    Numbers precondition(const Residual &r, Unknowns &z, const Mask &busy);
-    void add(const Numbers &alpha, const Unknowns &p, Unknowns &x, const Mask &busy) const;
-    void subtract(const Numbers &alpha, const Residual &Ap, Residual &r, const Mask &busy) const;
-    void extend(const Unknowns &z, const Numbers &beta, Unknowns &p, const Mask &busy) const;
+    Numbers extend(const Unknowns &z, const Numbers &beta, Unknowns &p, Residual &Ap, const Mask &busy);
+    Numbers advance(const Numbers &alpha, const Unknowns &p, const Residual &Ap, Unknowns &x, Residual &r, Unknowns &z,
+                    const Mask &busy);
 
     // Of objects: b · P⁻¹ b, and r · z of the last preconditioning.
     const Numbers &alone() const { return alone_products_; }
     const Numbers &products() const { return rz_; }
-    Numbers work(const Unknowns &x, const Mask &busy); // b · d of clusters
+    Numbers work() const { return of_clusters(bd_); } // b · d of clusters, as x was last
 
     // Sums of those objects that their own factor does not solve.
     Numbers of_clusters(const Numbers &of_objects) const;
     const CoarseSpace &coarse() const { return coarse_; }
 
 private:
-    template <class Work> void for_busy(const Mask &busy, const Work &work, bool backwards = false) const;
-    template <class Work> void for_objects(const Mask &busy, const Work &work) const;
+    // The blocks with busy objects; for_blocks() calls work(block) for them.
+    Mask blocks_with(const Mask &busy) const { return objective_.blocks.blocks_with(busy); }
+    template <class Work>
+    void for_blocks(const Mask &blocks, const Work &work, bool backwards = false, LoopSite site = LoopSite::here()) const;
+    // Calls work(object, first point, their end) for the objects of a block that have points.
+    template <class Work> void for_objects(int block, const Work &work) const;
     bool is_exact(int block) const { return objective_.blocks[block].is_exact(); }
     int cluster(int object) const { return objective_.couplings.clusters()[object]; }
     Vec3 at(int point, int block, const double *of_block) const;
     AlignedVector solve(int block, const std::vector<Vec3> &at_points) const;
     void precondition_block(int block, const Residual &r, Unknowns &z) const;
-    void set_products(int block, const std::vector<Vec3> &a, const std::vector<Vec3> &b, Numbers &of_objects) const;
+    double work_of(int block, int object, const Unknowns &x) const;
 
     Objective &objective_;
     CoarseSpace coarse_;
     AlignedVector alone_;                    // P⁻¹ b
-    Numbers alone_products_, rz_, pPp_, bd_; // of objects
+    Numbers alone_products_, rz_, pAp_, bd_; // of objects
+    std::vector<int> joint_;                 // objects that their own factor does not solve
     bool backwards_ = false;
 };
 

@@ -26,8 +26,8 @@ public:
     int vertex(int point) const { return points_.items()[point].vertex; }
     int object(int point) const { return points_.items()[point].object; }
 
-    // Computes C p, p being given at the points, for busy objects; adds p · C p to the numbers of their clusters.
-    void multiply(View<Vec3> p, View<PairValue> values, View<unsigned char> busy, std::vector<double> &of_clusters);
+    // Computes C p, p being given at the points, for busy objects.
+    void multiply(View<Vec3> p, View<PairValue> values, View<unsigned char> busy);
     Vec3 product(int point) const { // C p there
         Vec3 product = Vec3::Zero();
         for (const auto &[coupling, as] : roles_.of(point)) {
@@ -46,6 +46,12 @@ public:
     };
     const std::vector<Coupling> &all() const { return couplings_; } // in the order of pairs
 
+    // The couplings of a point, and as which of their four.
+    struct Role {
+        int coupling, as;
+    };
+    View<Role> roles(int point) const { return roles_.of(point); }
+
 private:
     void join_clusters(int objects);
     void number_points(const ContactSet &contacts, const VertexTable &table, const BlockSet &blocks);
@@ -58,10 +64,7 @@ private:
     };
     Lists<Point> points_;                   // of blocks, by their vertices
     std::vector<std::array<int, 2>> range_; // of objects
-    struct Role {
-        int coupling, as;
-    };
-    Lists<Role> roles_; // of points
+    Lists<Role> roles_;                     // of points
 };
 
 } // namespace ringlet

@@ -207,13 +207,10 @@ LinearSystem::Result LinearSystem::conjugate_gradient(const LinearSettings &sett
     CoupledSystem::Residual r;
     CoupledSystem::Unknowns x;
     coupled_.first_iterate(r, x);
-    std::vector<unsigned char> busy(all.size(), 1);
     const auto unconverged = [&](int iterations, const std::vector<double> &rz, const std::vector<double> &decreases) {
         if (iterations > 0) test.add_decreases(decreases);
-        busy = iterations == settings.max_iterations
-                   ? std::vector<unsigned char>(all.size(), 0)
-                   : test.unconverged({iterations, rz, coupled_.work(x, busy), coupled_.products()});
-        return busy;
+        if (iterations == settings.max_iterations) return std::vector<unsigned char>(all.size(), 0);
+        return test.unconverged({iterations, rz, coupled_.work(), coupled_.products()});
     };
     const ConjugateGradientResult solved = ringlet::conjugate_gradient(coupled_, r, x, unconverged);
     coupled_.solution(x, direction);

@@ -129,9 +129,9 @@ void Newton::accept(PlannedMove move, const LineSearchResult &found, AlignedVect
 
 std::vector<Vec3> Newton::end_of(const AlignedVector &direction) const {
     std::vector<Vec3> end = configuration_.positions;
-#pragma omp parallel for schedule(static)
-    for (int v = 0; v < table_.dynamic_vertices; ++v)
+    parallel_for(table_.dynamic_vertices, [&](int v) {
         if (table_.mesh.moves[v]) end[v] += objective_.blocks.position(direction, v);
+    });
     return end;
 }
 

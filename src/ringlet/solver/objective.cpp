@@ -1,6 +1,7 @@
 #include "ringlet/solver/objective.h"
 
 #include "ringlet/math/collect.h"
+#include "ringlet/math/parallel.h"
 #include "ringlet/solver/settings.h"
 
 #include <algorithm>
@@ -12,10 +13,10 @@ void ContactEnergy::remove(View<unsigned char> changed) {
 }
 
 void ContactEnergy::measure_kept(View<Vec3> positions, View<unsigned char> changed) {
-#pragma omp parallel for schedule(static)
-    for (int k = 0; k < contacts_.count(); ++k)
+    parallel_for(contacts_.count(), [&](int k) {
         if (any_marked(objects_[k], changed))
             kept_[k] = contacts_.kept_energy(k, contacts_.stencil_of(k).separation(positions));
+    });
 }
 
 void ContactEnergy::at_linearisation(View<Vec3> positions) {
@@ -23,12 +24,11 @@ void ContactEnergy::at_linearisation(View<Vec3> positions) {
     objects_.resize(contacts_.count());
     kept_.resize(contacts_.count());
     barriers_.resize(all.size());
-#pragma omp parallel for schedule(static)
-    for (int k = 0; k < contacts_.count(); ++k) {
-        const auto [a, b] = objects_[k] = table_.objects_of(contacts_.stencil_of(k));
+    parallel_for(contacts_.count(), [&](int k) {
+        objects_[k] = table_.objects_of(contacts_.stencil_of(k));
         kept_[k] = contacts_.kept_energy(k, contacts_.stencil_of(k).separation(positions));
-        if (size_t(k) < all.size()) barriers_[k] = {a, b, all[k].barrier.energy_at(all[k].gap)};
-    }
+        if (size_t(k) < all.size()) barriers_[k] = {objects_[k][0], objects_[k][1], all[k].barrier.energy_at(all[k].gap)};
+    });
 }
 
 void ContactEnergy::exact(const ReachablePairs &pairs, View<Vec3> positions, View<double> traveled,
@@ -71,20 +71,24 @@ void Objective::find_contacts(const std::vector<ContactPair> &pairs, View<unsign
     contacts.find(table.mesh, table.material, pairs, objects, start, positions, damping);
     values_.resize(contacts.count());
     couplings.find(contacts, table, blocks);
-    touched_ = {size_t(blocks.count()), [&](const auto &work) {
-                    for (const int v : contacts.vertices()) work(blocks.block_of(table.object_of(v)), v);
+    touched_ = {size_t(blocks.count()), int(contacts.vertices().size()), [&](int k, const auto &add) {
+                    const int v = contacts.vertices()[k];
+                    add(blocks.block_of(table.object_of(v)), v);
                 }};
     find_neighbours(objects);
 }
 
 void Objective::find_neighbours(View<unsigned char> objects) {
     std::erase_if(neighbours_, [&](const Neighbours &two) { return !two.pushes || any_marked(two.objects, objects); });
-    for (int pair = 0; pair < contacts.count(); ++pair) { // most follow one of the same objects
-        const std::array<int, 2> both = table.objects_of(contacts.stencil_of(pair));
-        if (both[0] < 0 || both[1] < 0 || both[0] == both[1]) continue;
-        if (neighbours_.empty() || neighbours_.back().objects != both) neighbours_.push_back({both, false});
-        neighbours_.back().pushes |= contacts.pushes(pair);
-    }
+    const auto found = collect_ranges<Neighbours>(contacts.count(), [&](int begin, int end, std::vector<Neighbours> &list) {
+        for (int pair = begin; pair < end; ++pair) { // most follow one of the same objects
+            const std::array<int, 2> both = table.objects_of(contacts.stencil_of(pair));
+            if (both[0] < 0 || both[1] < 0 || both[0] == both[1]) continue;
+            if (list.empty() || list.back().objects != both) list.push_back({both, false});
+            list.back().pushes |= contacts.pushes(pair);
+        }
+    });
+    neighbours_.insert(neighbours_.end(), found.begin(), found.end());
 }
 
 std::vector<unsigned char> Objective::with_touched(const std::vector<unsigned char> &objects) const {
@@ -105,9 +109,9 @@ void Objective::evaluate(const AlignedVector &x, const std::vector<unsigned char
         blocks[b].energies(blocks.of(b, x), energies);
         blocks.from_lanes(b, energies, own_energies_);
     });
-#pragma omp parallel for schedule(static)
-    for (int v = 0; v < table.dynamic_vertices; ++v)
+    parallel_for(table.dynamic_vertices, [&](int v) {
         if (changed[table.mesh.object[v]]) positions_[v] = blocks.position(x, v);
+    });
 }
 
 std::vector<unsigned char> Objective::active_among(const std::vector<unsigned char> &objects) const {
@@ -137,9 +141,8 @@ void Objective::exact_energies(const AlignedVector &x, const ReachablePairs &pai
 
 void Objective::linearise_contacts(const AlignedVector &x) {
     blocks.gather(x, positions_);
-#pragma omp parallel for schedule(static)
-    for (int pair = 0; pair < contacts.count(); ++pair)
-        values_[pair] = contacts.value(pair, contacts.stencil_of(pair).separation(positions_));
+    parallel_for(contacts.count(),
+                 [&](int pair) { values_[pair] = contacts.value(pair, contacts.stencil_of(pair).separation(positions_)); });
 }
 
 void Objective::assemble(int block, const AlignedVector &x) {
@@ -177,10 +180,9 @@ void Objective::add_pair_forces(int vertex, Block &block) const {
 
 void Objective::lag_normal_forces(const AlignedVector &direction) {
     const std::vector<Contact> &all = contacts.contacts();
-#pragma omp parallel for schedule(static)
-    for (int k = 0; k < int(all.size()); ++k) {
+    parallel_for(int(all.size()), [&](int k) {
         const Contact &c = all[k];
-        if (!any_marked(table.objects_of(c.at), blocks.active_objects())) continue;
+        if (!any_marked(table.objects_of(c.at), blocks.active_objects())) return;
         Vec3 change = Vec3::Zero();
         for (int i = 0; i < 4; ++i)
             if (table.mesh.moves[c.at.vertex[i]] && c.at.weight[i] != 0.0)
@@ -190,7 +192,7 @@ void Objective::lag_normal_forces(const AlignedVector &direction) {
             std::max(c.force(), -push.stiffness * barrier(solver_settings::closest_gap * push.d_hat, push.d_hat, 0.0).first);
         const Vec3 pushed = values_[k].hessian * change - c.damping.coefficient * change;
         contacts.set_lagged_force(k, std::min(std::max(0.0, c.force() - push.normal.dot(pushed)), most));
-    }
+    });
 }
 
 } // namespace ringlet

@@ -1,5 +1,6 @@
 #include "ringlet/solver/search_path.h"
 
+#include "ringlet/math/parallel.h"
 #include "ringlet/solver/settings.h"
 
 #include <algorithm>
@@ -128,12 +129,11 @@ void set_end_of_path(const BlockSet &blocks, const VertexTable &table, View<Vec3
                      const SearchPath &path, const std::vector<unsigned char> &objects, AlignedVector &end,
                      std::vector<Vec3> &to, std::vector<Vec3> &apex) {
     move_along(blocks, x, std::vector<double>(table.objects, 1.0), path, objects, end);
-#pragma omp parallel for schedule(static)
-    for (int v = 0; v < table.dynamic_vertices; ++v) {
-        if (!table.mesh.moves[v] || !objects[table.mesh.object[v]]) continue;
+    parallel_for(table.dynamic_vertices, [&](int v) {
+        if (!table.mesh.moves[v] || !objects[table.mesh.object[v]]) return;
         to[v] = blocks.position(end, v);
         apex[v] = now[v] + 0.5 * blocks.position(path.straight, v); // of a parabola, the tangents' intersection
-    }
+    });
 }
 
 // The path of an object that was limited ends there. Each vertex goes on bending as far as it is left to. A chord of the curve
@@ -185,9 +185,9 @@ LimitedPath limit_path(const Objective &objective, Configuration &configuration,
     shorten(blocks, left, path);
 
     set_end_of_path(blocks, table, now, x, path, limited, end, wanted, move.apex);
-#pragma omp parallel for schedule(static)
-    for (int v = 0; v < table.dynamic_vertices; ++v)
+    parallel_for(table.dynamic_vertices, [&](int v) {
         if (table.mesh.moves[v] && limited[table.mesh.object[v]]) changed[v] = 1, move.to[v] = wanted[v];
+    });
     configuration.limit_again(move, limits.yield, changed, report);
     ObjectMoves moves(blocks, now, wanted, move.to);
     moves.shorten(left);
