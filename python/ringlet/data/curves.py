@@ -198,9 +198,11 @@ class Curves:
             raise UserError(
                 f"{what}: curve {self.ids[short[0]]} has {self.counts[short[0]]} points; must have at least 3"
             )
-        edges = self._steps()
+        x, y, z = (self.points[1:] - self.points[:-1]).T  # columns are faster than rows of three numbers
+        edges = np.sqrt(x * x + y * y + z * z)
         edges[self.offsets[1:-1] - 1] = np.inf  # the jump from one curve to the next is no edge
-        if (flat := np.flatnonzero(~(edges >= LEAST_EDGE))).size:
+        if not edges.min(initial=np.inf) >= LEAST_EDGE:
+            flat = np.flatnonzero(~(edges >= LEAST_EDGE))
             curve = self._curve_of(flat[0])
             point, place = flat[0] - self.offsets[curve], ", ".join(f"{x:.4g}" for x in self.points[flat[0]])
             raise UserError(

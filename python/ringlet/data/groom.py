@@ -131,15 +131,19 @@ class Groom:
     grooms: dict[str, dict[str, Any]] = field(default_factory=dict)
     offsets: HairOffsets | None = None
 
+    def check_bound(self, what: str) -> None:
+        """Refuses locks that are not bound to the scalp; ``what`` asks, for messages."""
+        if not {"root_triangle", "root_barycentric"} <= self.locks.curve.keys():
+            raise UserError(f"{what}: the locks are not bound to a scalp; make the groom again from its recipe")
+
     def check_roots(self, scalp_points: NDArray[np.floating], when: str, what: str) -> None:
         """Refuses locks without roots on the scalp, and a scalp on which a root has no frame.
 
         scalp_points: positions of the scalp [m], shape (n, 3)
         when, what:   which positions these are, and who asks, for messages
         """
+        self.check_bound(what)
         scalp, bound = self.scalp, self.locks.curve
-        if "root_triangle" not in bound or "root_barycentric" not in bound:
-            raise UserError(f"{what}: the locks are not bound to a scalp; make the groom again from its recipe")
         if scalp_points.shape != scalp.points.shape:
             raise UserError(
                 f"{scalp.name}: has {len(scalp_points)} points at {when}, but the groom was made on one with "

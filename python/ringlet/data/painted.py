@@ -34,17 +34,19 @@ def per_lock(
     value = np.full(len(curves), setting.value)
     for name, there in setting.region.items():
         value[in_region(name, curves, scalp, f"{what}.region")] = there
-    painting = np.ones(len(curves)) if setting.map is None else painted(setting.map, curves, scalp, f"{what}.map")
-    with np.errstate(over="ignore"):
-        bad = np.flatnonzero(bounds.exceeded(value * painting * peak))
-    if bad.size and not bounds.is_part:
-        raise UserError(
-            f"{what} is {value[bad[0]] * painting[bad[0]] * peak:.6g}{bounds.suffix} on lock {curves.ids[bad[0]]}, by "
-            f"its map '{setting.map}'; must be at most {bounds.most:.6g}{bounds.suffix}, paint it again"
-        )
-    value *= setting.factors(random, curves.ids, curves.roots)
-    value *= painting
-    value = bounds.clipped(value, peak)
+    chance = setting.factors(random, curves.ids, curves.roots) if setting.by_chance else 1.0
+    if setting.map is None:
+        value = bounds.clipped(value * chance, peak)
+    else:
+        painting = painted(setting.map, curves, scalp, f"{what}.map")
+        with np.errstate(over="ignore"):
+            bad = np.flatnonzero(bounds.exceeded(value * painting * peak))
+        if bad.size and not bounds.is_part:
+            raise UserError(
+                f"{what} is {value[bad[0]] * painting[bad[0]] * peak:.6g}{bounds.suffix} on lock {curves.ids[bad[0]]}, "
+                f"by its map '{setting.map}'; must be at most {bounds.most:.6g}{bounds.suffix}, paint it again"
+            )
+        value = bounds.clipped(value * chance * painting, peak)
     for lock, own in setting.lock.items():
         value[curves.ids == lock] = own
     return value

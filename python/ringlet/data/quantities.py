@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from itertools import pairwise
 from typing import Annotated, Any, Literal, get_args
 
@@ -21,7 +22,6 @@ from pydantic import (
     model_validator,
 )
 from pydantic_core import PydanticCustomError, core_schema
-from scipy.interpolate import PchipInterpolator
 
 from ringlet.data import explain as messages
 from ringlet.data import settings
@@ -43,20 +43,25 @@ class Section(settings.Section):
     @classmethod
     def _with_defaults(cls, data: Any) -> Any:
         if isinstance(data, dict):
+            own, data = _stated_defaults(cls), dict(data)
             for name, default in cls.defaults(data).items():
-                if name in data:
-                    given = data[name]
-                    if isinstance(default, dict) and not isinstance(given, BaseModel):
-                        data = {**data, name: {**default, **(given if isinstance(given, dict) else {"value": given})}}
-                else:
-                    data = {**data, name: default}
+                if name not in data:  # a default of the class is read already
+                    data[name] = cls.model_fields[name].default if default is own.get(name) else default
+                elif isinstance(default, dict) and not isinstance(given := data[name], BaseModel):
+                    data[name] = {**default, **(given if isinstance(given, dict) else {"value": given})}
         return data
 
     @classmethod
     def defaults(cls, data: dict[str, Any]) -> dict[str, Any]:
         """The values of settings that ``data`` lacks, as a recipe states them."""
-        varied = {name: field for name, field in cls.model_fields.items() if isinstance(field.default, Varied)}
-        return {name: _as_stated(field.default, field.metadata) for name, field in varied.items()}
+        return dict(_stated_defaults(cls))
+
+
+@cache
+def _stated_defaults(section: type[Section]) -> dict[str, dict[str, Any]]:
+    """The default tables of varied settings, as a recipe states them."""
+    varied = {name: field for name, field in section.model_fields.items() if isinstance(field.default, Varied)}
+    return {name: _as_stated(field.default, field.metadata) for name, field in varied.items()}
 
 
 def _as_stated(value: Varied, metadata: list[Any]) -> dict[str, Any]:
@@ -203,6 +208,11 @@ class Varied(Section):
         """The largest factor on the value along a lock."""
         return 1.0
 
+    @property
+    def by_chance(self) -> bool:
+        """Whether chance or noise change the value."""
+        return self.vary > 0.0 or self.noise > 0.0
+
     def factors(self, random: Random, ids: NDArray, places: NDArray) -> NDArray[np.float64]:
         """The factors of chance and noise on the value, shape (len(ids),)."""
         factor = np.ones(len(ids))
@@ -245,7 +255,41 @@ def along(ramp: list[tuple[float, float]], u: NDArray) -> NDArray[np.float64]:
     at, factor = np.array(ramp).T
     if len(at) == 1:
         return np.full(np.shape(u), factor[0])
-    return np.clip(PchipInterpolator(at, factor)(np.clip(u, at[0], at[-1])), factor.min(), factor.max())
+    u, width = np.clip(u, at[0], at[-1]), np.diff(at)
+    slope = np.diff(factor) / width
+    tangent = _tangents(width, slope)
+    excess = (tangent[:-1] + tangent[1:] - 2 * slope) / width
+    piece = np.minimum(np.searchsorted(at, u, side="right") - 1, len(width) - 1)
+    x = u - at[piece]
+    linear = factor[piece] + tangent[piece] * x
+    cubic = linear + ((slope - tangent[:-1]) / width - excess)[piece] * (x * x) + (excess / width)[piece] * (x * x * x)
+    return np.clip(cubic, factor.min(), factor.max())
+
+
+def _tangents(width: NDArray[np.float64], slope: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Slopes at the places of a ramp, from those of the pieces between them.
+
+    Inside it is their harmonic mean, 0 at a peak or a valley (Fritsch and Butland 1984). At the ends it is that of a
+    parabola, unless it overshoots (Moler 2004).
+    """
+    if len(slope) == 1:
+        return np.repeat(slope, 2)
+    before, after = 2 * width[1:] + width[:-1], width[1:] + 2 * width[:-1]
+    rises = np.sign(slope)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        inner = 1.0 / ((before / slope[:-1] + after / slope[1:]) / (before + after))
+    inner[(rises[1:] != rises[:-1]) | (rises[1:] == 0.0)] = 0.0
+    return np.concatenate([[_end_tangent(width[:2], slope[:2])], inner, [_end_tangent(width[:-3:-1], slope[:-3:-1])]])
+
+
+def _end_tangent(width: NDArray[np.float64], slope: NDArray[np.float64]) -> float:
+    """The slope at an end of a ramp, from its first two pieces as seen from there."""
+    tangent = ((2 * width[0] + width[1]) * slope[0] - width[0] * slope[1]) / (width[0] + width[1])
+    if np.sign(tangent) != np.sign(slope[0]):
+        return 0.0
+    if np.sign(slope[0]) != np.sign(slope[1]) and abs(tangent) > 3.0 * abs(slope[0]):
+        return 3.0 * slope[0]
+    return tangent
 
 
 class Ramped(Varied):

@@ -8,6 +8,7 @@ import warnings
 from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
+from types import NoneType
 from typing import Any, ClassVar, get_args
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, model_validator
@@ -42,7 +43,7 @@ class Section(BaseModel):
     @classmethod
     def _only_known_settings(cls, data: Any) -> Any:
         if isinstance(data, dict):
-            known = [field.alias or name for name, field in cls.model_fields.items()]
+            known = _names(cls)
             for key in data:
                 if key not in known:
                     hint = f" any more; {cls.removed[key]}" if key in cls.removed else did_you_mean(key, known)
@@ -55,10 +56,11 @@ class Section(BaseModel):
         """Refuses true, false and text in place of numbers, which pydantic would convert."""
         if isinstance(data, dict):
             for name, (kinds, converts) in _numbers(cls).items():
-                if converts and isinstance(data.get(name), bool):
+                value = data.get(name)
+                if type(value) in (float, int, NoneType) or (converts and isinstance(value, bool)):
                     continue  # the setting itself says what `true` and `false` mean
-                for leaf in _leaves(data.get(name)):
-                    text = isinstance(leaf, str) and not converts and kinds <= {int, float, type(None)}
+                for leaf in _leaves(value):
+                    text = isinstance(leaf, str) and not converts and kinds <= {int, float, NoneType}
                     if text or (isinstance(leaf, bool) and bool not in kinds):
                         whole = "" if float in kinds else "whole "
                         length = measure(leaf) if isinstance(leaf, str) else None
@@ -66,6 +68,12 @@ class Section(BaseModel):
                         message = f"is {shown(leaf)}; must be a {whole}number{metres}"
                         raise PydanticCustomError("setting", "{key}{message}", {"key": name, "message": message})
         return data
+
+
+@cache
+def _names(section: type[BaseModel]) -> dict[str, None]:
+    """The names of a table's settings as a file has them, in their order."""
+    return dict.fromkeys(field.alias or name for name, field in section.model_fields.items())
 
 
 @cache

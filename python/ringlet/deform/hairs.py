@@ -28,6 +28,7 @@ class Hairs:
     axis:   reference direction of each lock, in the frame of the scalp at its root, shape (locks, 3)
     layout: inputs of the kernel that follow neither lock nor scalp (src/ringlet/groom/hairs.h)
     root:   offsets of hair roots from lock roots on the scalp at rest [m], shape (hairs, 3); None where not computed
+    frames: of the scalp at rest at the roots of locks, shape (locks, 3, 3); None where not computed
     """
 
     curves: Curves
@@ -35,6 +36,7 @@ class Hairs:
     axis: NDArray[np.float64]
     layout: dict[str, Any]
     root: NDArray[np.float32] | None = None
+    frames: NDArray[np.float64] | None = None
 
     @property
     def parts(self) -> list[Hairs]:
@@ -96,7 +98,8 @@ class Hairs:
     ) -> NDArray[np.float64]:
         """Fills ``out`` relative to the returned origin [m], for which single precision is exact enough."""
         origin = origin_of(lock_points)
-        points, offsets = np.ascontiguousarray(lock_points - origin, np.float32), self.groom.locks.offsets
+        near, offsets = lock_points - origin if origin.any() else lock_points, self.groom.locks.offsets
+        points = np.ascontiguousarray(near, np.float32)
         _core.warp_hairs(points, offsets, out, **deformation)
         if surfaces:
             layout = {name: self.layout[name] for name in ("first", "tip", "join", "flat", "hold", "pace")}
@@ -109,21 +112,21 @@ class Hairs:
 
         ``axis`` (locks, 3) and ``root`` (hairs, 3) [m] follow the scalp; the other arrays are constant.
         """
-        at = np.ascontiguousarray(scalp_points, np.float64)
-        lock_roots, axis = self._frames(at)
-        root = self.root if scalp_points is self.groom.scalp.points else None
-        if root is None:
+        if self.frames is not None and scalp_points is self.groom.scalp.points:
+            frames, root = self.frames, self.root
+        else:
+            at = np.ascontiguousarray(scalp_points, np.float64)
+            lock_roots, frames = root_frames(self.groom, at, "this frame")
             root = self.root_offsets(at, lock_roots)
-        return {"axis": axis, "root": root, **self.layout}
+        return {"axis": self._axes_in(frames), "root": root, **self.layout}
 
     def axes(self, scalp_points: NDArray) -> NDArray[np.float64]:
         """The ``axis`` of ``deformation`` alone, which costs less."""
-        return self._frames(np.ascontiguousarray(scalp_points, np.float64))[1]
+        return self._axes_in(root_frames(self.groom, np.ascontiguousarray(scalp_points, np.float64), "this frame")[1])
 
-    def _frames(self, at: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Roots [m] and reference directions of the locks, each of shape (locks, 3)."""
-        roots, frames = root_frames(self.groom, at, "this frame")
-        return roots, np.einsum("lxk,lk->lx", frames, self.axis)
+    def _axes_in(self, frames: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Reference directions of the locks in frames of the scalp, shape (locks, 3)."""
+        return np.einsum("lxk,lk->lx", frames, self.axis)
 
     def root_offsets(self, scalp_points: NDArray, lock_roots: NDArray) -> NDArray[np.float32]:
         """Offset of each hair's root from its lock's root [m], shape (hairs, 3)."""

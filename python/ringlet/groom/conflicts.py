@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
-from ringlet.groom.operators.operator import arc_lengths, grid, unit
+from ringlet.groom.operators.operator import grid, unit
 from ringlet.groom.operators.tied import TO_TIE
 from ringlet.groom.recipe import Recipe
 from ringlet.groom.scalp import Scalp
@@ -22,8 +22,8 @@ START = 0.02  # of a lock [m]: further along, hair that lies on a head is under 
 
 def without_place(recipe: Recipe, guides: Curves, locks: Curves) -> list[str]:
     """One message for each edit of a guide or a lock that does not exist."""
-    sculpted = sorted({sculpt.guide for sculpt in recipe.sculpt} - set(guides.ids.tolist()))
-    edited = sorted({edit.lock for edit in recipe.edit} - set(locks.ids.tolist()))
+    sculpted = _missing({sculpt.guide for sculpt in recipe.sculpt}, guides)
+    edited = _missing({edit.lock for edit in recipe.edit}, locks)
     return [
         *(f"guide {guide} was sculpted but is no longer there; its shape is kept until it is" for guide in sculpted),
         *(
@@ -31,6 +31,11 @@ def without_place(recipe: Recipe, guides: Curves, locks: Curves) -> list[str]:
             for lock in edited
         ),
     ]
+
+
+def _missing(ids: set[int], curves: Curves) -> list[int]:
+    """Ids, ascending, of which there is no curve."""
+    return sorted(ids - set(curves.ids.tolist())) if ids else []
 
 
 def lengthened(name: str, before: Curves, after: Curves) -> Iterator[str]:
@@ -59,11 +64,16 @@ def inward(locks: Curves, scalp: Scalp) -> Iterator[str]:
 def _starts(locks: Curves) -> NDArray[np.float64]:
     """From the root of each lock to the mean of its points over ``START``, at least one, shape (count, 3) [m]."""
     points, most = grid(locks), 8
-    while (along := arc_lengths(points[:, :most]))[:, -1].min() < START and most < points.shape[1]:
+    while (run := _runs(points[:, :most]))[:, -1].min() < START and most < points.shape[1]:
         most *= 2
-    near = along[:, 1:] < np.maximum(START, along[:, 1:2] * (1 + 1e-6))
-    sums = np.where(near[:, :, None], points[:, 1:most], 0.0).sum(axis=1)
-    return sums / near.sum(axis=1, keepdims=True) - locks.roots
+    near = (run < np.maximum(START, run[:, :1] * (1 + 1e-6))).astype(np.float64)
+    return np.einsum("cn,cnk->ck", near, points[:, 1:most]) / near.sum(axis=1, keepdims=True) - locks.roots
+
+
+def _runs(points: NDArray[np.floating]) -> NDArray[np.float64]:
+    """Arc length from the root to every further point [m], shape (count, points - 1)."""
+    x, y, z = np.moveaxis(points[:, 1:] - points[:, :-1], 2, 0)  # columns are faster than rows of three numbers
+    return np.cumsum(np.sqrt(x * x + y * y + z * z), axis=1)
 
 
 def not_strands(locks: Curves) -> Iterator[str]:

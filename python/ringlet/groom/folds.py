@@ -9,6 +9,7 @@ import numpy as np
 
 from ringlet.data.braids import Braids
 from ringlet.data.curves import Curves
+from ringlet.data.groom import STRAND_RADIUS
 
 SHOWN = 10  # locks that a summary names
 
@@ -38,6 +39,8 @@ def folded_braids(locks: Curves) -> dict[str, Any]:
 
 def fold_warnings(locks: Curves) -> Iterator[str]:
     """A sentence about the braids of a groom that fold; none where none does."""
+    if STRAND_RADIUS not in locks.curve:
+        return
     found = folded_braids(locks)
     if found["places"]:
         first = found["worst"][0]

@@ -56,23 +56,25 @@ def lay_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memor
     if not 0.0 < fraction <= 1.0:
         raise UserError(f"hairs: fraction is {fraction}; must be more than 0 and at most 1")
     memory = memory or HairMemory()
-    frames = root_frames(groom, groom.scalp.points, "rest pose")[1]
+    groom.check_bound("hairs")
     key = _key(groom, settings, fraction, wider)
     if memory.hairs is None or memory.key != key:
         memory.key, memory.hairs = key, _placed(groom, settings, fraction, wider)
     cached = memory.hairs
-    axis = np.einsum("lxk,lx->lk", frames, axes(groom.locks, frames))
+    assert cached.frames is not None
+    axis = np.einsum("lxk,lx->lk", cached.frames, axes(groom.locks, cached.frames))
     layout = _with_lengths(cached, groom.locks)
     # Whoever keeps a layout compares curves: with a curl of hairs it changes with the locks.
     curves = cached.curves if layout is cached.layout else replace(cached.curves)
-    return Hairs(curves, groom, axis, layout, cached.root)
+    return Hairs(curves, groom, axis, layout, cached.root, cached.frames)
 
 
 def _placed(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -> Hairs:
     """Hairs with unset points and axes."""
     curves, layout = place_hairs(groom, settings, fraction, wider)
     hairs = Hairs(curves, groom, np.empty(0), layout)
-    hairs.root = hairs.root_offsets(groom.scalp.points, root_frames(groom, groom.scalp.points, "rest pose")[0])
+    roots, hairs.frames = root_frames(groom, groom.scalp.points, "rest pose")
+    hairs.root = hairs.root_offsets(groom.scalp.points, roots)
     return hairs
 
 
@@ -103,7 +105,7 @@ def _key(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -> 
         lock_joins(locks),
         *((locks.points, locks.curve[LAID]) if LAID in locks.curve else ()),
         *(locks.curve[name] for name in (felt.PROFILE, felt.MATTING, felt.FUZZ) if name in locks.curve),
-        *(values(name) for values in hair_values(groom, settings).values() for name in _varied(values.settings)),
+        *(values(name) for values in hair_values(groom, settings).values() for name in _placed_values(values.settings)),
         locks.curve.get(STRAND_RADIUS, np.empty(0)),
         scalp.points,
         scalp.triangles,
@@ -116,6 +118,9 @@ def _key(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -> 
     return digest.digest()
 
 
-def _varied(settings: BaseModel) -> list[str]:
-    """Names of the settings that vary from lock to lock."""
-    return [name for name in type(settings).model_fields if isinstance(getattr(settings, name), Varied)]
+def _placed_values(settings: BaseModel) -> list[str]:
+    """Names of the settings whose values depend on where locks are, and not on the settings and on ids alone."""
+    found = ((name, getattr(settings, name)) for name in type(settings).model_fields)
+    return [
+        name for name, value in found if isinstance(value, Varied) and (value.map or value.region or value.noise > 0.0)
+    ]

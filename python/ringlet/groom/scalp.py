@@ -35,6 +35,7 @@ class Scalp:
 
     def __init__(self, mesh: Mesh, region: str | None, colliders: Sequence[Mesh] = ()) -> None:
         self.mesh, self.colliders = mesh, colliders
+        self._framed: tuple[tuple[NDArray, NDArray], NDArray[np.float64]] | None = None
         self.points, self.triangles = _contiguous(mesh)
         _check_mesh(mesh)
         try:
@@ -228,10 +229,14 @@ class Scalp:
         return foot, frames[:, :, 2]
 
     def frames(self, curves: Curves) -> NDArray[np.float64]:
-        """Frames at the roots of bound curves, shape (count, 3, 3); columns tangent, bitangent, normal."""
-        return _core.root_frames(
-            self.points, self.triangles, curves.curve["root_triangle"], curves.curve["root_barycentric"]
-        )[1]
+        """Frames at the roots of bound curves, shape (count, 3, 3); columns tangent, bitangent, normal.
+
+        Those of the last roots are kept: one stage after the other asks for them.
+        """
+        roots = curves.curve["root_triangle"], curves.curve["root_barycentric"]
+        if self._framed is None or any(a is not b for a, b in zip(self._framed[0], roots, strict=True)):
+            self._framed = roots, _core.root_frames(self.points, self.triangles, *roots)[1]
+        return self._framed[1]
 
     def bind(self, curves: Curves, tolerance: float, what: str) -> Curves:
         """Binds curves to the region: adds ``root_triangle`` and ``root_barycentric``.

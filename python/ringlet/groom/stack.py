@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -178,8 +179,16 @@ def _with_mask_of_hairs(locks: Curves, recipe: Recipe, scalp: Mesh) -> Curves:
 
 
 def _scalp(recipe: Recipe, mesh: Mesh, colliders: Sequence[Mesh], memory: Memory) -> tuple[str, Scalp]:
+    """The scalp with a key of all that it is made of; at once where that is what it was made of in the last run."""
+    settings = str((recipe.seed, recipe.unit, recipe.scalp.region, list(mesh.textures)))
+    surface = mesh.points, mesh.triangles, mesh.regions, mesh.maps, mesh.vectors, mesh.uv
+    bodies = (part for body in colliders for part in (body.points, body.triangles))
+    given = [*surface, *mesh.textures.values(), *bodies]
+    if memory.scalp is not None and memory.scalp_given[0] == settings and _same(memory.scalp_given[1], given):
+        return memory.scalp
+    memory.scalp_given = settings, given
     key = key_of(
-        str((recipe.seed, recipe.unit, recipe.scalp.region)),
+        settings,
         mesh.points.tobytes(),
         mesh.triangles.tobytes(),
         *(chunk for kind in (mesh.regions, mesh.maps, mesh.vectors) for chunk in _contents(kind)),
@@ -190,6 +199,11 @@ def _scalp(recipe: Recipe, mesh: Mesh, colliders: Sequence[Mesh], memory: Memory
     if memory.scalp is None or memory.scalp[0] != key:
         memory.scalp = (key, Scalp(mesh, recipe.scalp.region, colliders))
     return memory.scalp
+
+
+def _same(a: Sequence[Any], b: Sequence[Any]) -> bool:
+    """Whether two lists have the same objects."""
+    return len(a) == len(b) and all(x is y for x, y in zip(a, b, strict=True))
 
 
 def _contents(named: dict[str, NDArray]) -> Iterator[bytes]:

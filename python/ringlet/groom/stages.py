@@ -32,6 +32,8 @@ class Memory:
 
     results: key and curves of each stage
     worn:    key of each operator, and what locks wear from there on
+    scalp:   key of all that it is made of, and the scalp
+    scalp_given: what it is made of, which nobody changes in place
     files:   contents of files that have not changed, by name
     hairs:   cache of the render hairs
     grooms:  caches of each groom, by name, where the recipe has several
@@ -40,6 +42,7 @@ class Memory:
     results: dict[str, tuple[str, Curves, list[str]]] = field(default_factory=dict)
     worn: dict[str, tuple[str, Sequence[Worn]]] = field(default_factory=dict)
     scalp: tuple[str, Scalp] | None = None
+    scalp_given: tuple[str, list[Any]] = ("", [])
     files: dict[str, tuple[tuple[int, str], Any]] = field(default_factory=dict)
     hairs: HairMemory = field(default_factory=HairMemory)
     grooms: dict[str, Memory] = field(default_factory=dict)

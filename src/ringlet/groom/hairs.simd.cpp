@@ -36,7 +36,8 @@ struct Across {
     const float *x, *y, *turn_cos, *turn_sin, *escape_x, *escape_y;
 };
 
-Float4 on_lock(const LockTable &lock, int i, float t, const Across &across, int k) {
+// By value and inline: else each point of a hair asks anew for what its lock has.
+[[gnu::always_inline]] inline Float4 on_lock(LockTable lock, int i, float t, const Across &across, int k) {
     const Float4 point = on_lock(lock.segments[i], t, across.x[k], across.y[k]);
     if (lock.centres == nullptr) return point;
     const CentreSegment &centre = lock.centres[i];
@@ -48,7 +49,8 @@ Float4 on_lock(const LockTable &lock, int i, float t, const Across &across, int 
 
 } // namespace
 
-void fill_hairs(const LockTable &lock, const HairSpan &hairs) {
+void fill_hairs(const LockTable &table, const HairSpan &hairs) {
+    const LockTable lock = table; // no result is written over it
     const int n = hairs.points, last = lock.last, last_knot = hairs.knots - 2;
     float *__restrict x = hairs.scratch, *__restrict y = x + n, *__restrict along = y + n, *__restrict eased = along + n;
     int *__restrict segment = reinterpret_cast<int *>(eased + n), *__restrict knot = segment + n;
@@ -123,7 +125,7 @@ void fill_hairs(const LockTable &lock, const HairSpan &hairs) {
             continue;
         }
         const float share = hairs.share[hair];
-        const LockTable &other = hairs.locks[hairs.other[hair]];
+        const LockTable other = hairs.locks[hairs.other[hair]];
         const float rescale = static_cast<float>(other.last) / static_cast<float>(lock.last);
         const Float4 other_root = from + (row(lock.segments[0].c0) - joined(other, begin * rescale));
         for (int k = 0; k < n; ++k) {

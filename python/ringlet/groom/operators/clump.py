@@ -42,7 +42,7 @@ class Clump(Shape):
         """Defaults of the class; a plain number for ``tightness`` applies to all locks, without variation."""
         defaults = super().defaults(data)
         if isinstance(data.get("tightness"), int | float):
-            del defaults["tightness"]["vary"]
+            defaults["tightness"] = {name: value for name, value in defaults["tightness"].items() if name != "vary"}
         return defaults
 
     def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
