@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import re
 from collections.abc import Sequence
 from typing import Any, NamedTuple
@@ -54,6 +55,17 @@ def line_of(error: BaseException) -> str | None:
     if isinstance(error, RuntimeError) and str(error).startswith("Symlink loop"):  # of pathlib
         return abbreviated(one_line(f"{error}; check the place"))
     return None
+
+
+def failure(what: str, error: Exception) -> str:
+    """The message on a call that failed; a mistake in Ringlet is logged.
+
+    what: what could not be done, for the log
+    """
+    if (line := line_of(error)) is not None:
+        return line
+    logging.getLogger("ringlet").error(what, exc_info=error)
+    return one_line(f"this is a mistake in Ringlet ({type(error).__name__}: {error}); see the terminal")
 
 
 def abbreviated(line: str) -> str:

@@ -13,8 +13,8 @@ import re
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import least_squares
 
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
@@ -152,7 +152,8 @@ def pigments_of_color(color: ArrayLike, roughness: float) -> tuple[float, float,
 
     grid = np.stack(np.meshgrid(np.linspace(0.0, 0.999, 64), np.linspace(0.0, 1.0, 17), indexing="ij"), axis=-1)
     first = grid.reshape(-1, 2)[np.argmin((missing(grid) ** 2).sum(axis=-1))]
-    found = least_squares(missing, first, bounds=([0.0, 0.0], [MOST_MELANIN, 1.0]), xtol=1e-12, ftol=1e-12, gtol=1e-12)
+    bounds = [0.0, 0.0], [MOST_MELANIN, 1.0]
+    found = scipy.optimize.least_squares(missing, first, bounds=bounds, xtol=1e-12, ftol=1e-12, gtol=1e-12)
     return float(found.x[0]), float(found.x[1]), float(np.linalg.norm(found.fun))
 
 

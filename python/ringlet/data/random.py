@@ -8,8 +8,8 @@ from __future__ import annotations
 from hashlib import blake2b
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.special import ndtri
 
 from ringlet.data.former_names import first_name
 
@@ -45,7 +45,7 @@ class Random:
 
     def normals(self, ids: NDArray, columns: int) -> NDArray[np.float64]:
         """Normally distributed numbers (mean 0, deviation 1), shape (len(ids), columns)."""
-        return ndtri(np.maximum(self.uniforms(ids, columns), 1e-12))
+        return scipy.special.ndtri(np.maximum(self.uniforms(ids, columns), 1e-12))
 
     def field(self, places: NDArray, size: float) -> NDArray[np.float64]:
         """A smooth field in space, between -1 and 1, that changes over about ``size`` [m]; places (n, 3) [m]."""

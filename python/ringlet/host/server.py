@@ -7,12 +7,12 @@ import threading
 from importlib.metadata import version
 from typing import Any, BinaryIO
 
-from ringlet.data.errors import UserError, one_line
+from ringlet.data.errors import UserError, failure, one_line
 from ringlet.data.explain import shown
 from ringlet.data.reads import unrecorded
 from ringlet.host import grooms, requests, scene_files, shots, texts
 from ringlet.host.link import BrokenMessage, Message, read_message, write_message
-from ringlet.viewer.worker import SerialWorker, failure
+from ringlet.viewer.worker import SerialWorker
 
 PROTOCOL = 1  # version of the messages
 LONG = (requests.Simulate, requests.Hairs)

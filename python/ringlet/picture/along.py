@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter
 
 from ringlet.picture.scene import Scene
 
@@ -64,6 +64,6 @@ def hair_field(mi: Any, scene: Scene) -> HairField:
     squared = np.maximum((run**2).sum(axis=2), 1e-30)
     double = np.stack([run[:, :, 0] ** 2 - run[:, :, 1] ** 2, 2.0 * run[:, :, 0] * run[:, :, 1]], axis=2)
     field = np.concatenate([hair[:, :, None], hair[:, :, None] * double / squared[:, :, None]], axis=2)
-    mean = gaussian_filter(field, (1.2, 1.2, 0.0)).astype(np.float32)
+    mean = scipy.ndimage.gaussian_filter(field, (1.2, 1.2, 0.0)).astype(np.float32)
     direction = mean[:, :, 1:] / np.maximum(mean[:, :, :1], np.float32(1e-3))
     return HairField(mean[:, :, 0], direction.astype(np.float32))

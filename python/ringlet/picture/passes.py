@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter
 
 from ringlet.picture.along import HairField
 
@@ -56,7 +56,7 @@ class Passes:
         others = (total - self._brightest) / (self.count - 1)
         firefly = np.maximum(self._brightest - (1.5 * others + 0.05), 0.0)
         firefly[:, :, 3] = 0.0  # coverage has no fireflies
-        before, after = (gaussian_filter(light, (2.5, 2.5, 0.0)) for light in (total, total - firefly))
+        before, after = (scipy.ndimage.gaussian_filter(light, (2.5, 2.5, 0.0)) for light in (total, total - firefly))
         spread = np.clip(before / np.maximum(after, 1e-9), 1.0, 2.0)
         return [spread * (self._sums[half] - firefly * (self._half_of_brightest == half)) for half in (0, 1)]
 
@@ -83,7 +83,7 @@ class Passes:
 
 def _around(image: NDArray[np.floating]) -> NDArray[np.floating]:
     """Means of an image (height, width, channels) around its pixels."""
-    return gaussian_filter(image, (DETAIL_WINDOW, DETAIL_WINDOW, 0.0))
+    return scipy.ndimage.gaussian_filter(image, (DETAIL_WINDOW, DETAIL_WINDOW, 0.0))
 
 
 def _brightness(image: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solve_banded
 
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.groom import GROOM
@@ -28,20 +27,19 @@ def spline_controls(points: NDArray[np.floating]) -> NDArray[np.float64]:
 
     A B-spline runs inside its control polygon: with the points as controls, a curl of 12 points a turn would shrink by
     (1 - cos 30°)/3 = 4.5 %. At knot i the curve passes (cᵢ₋₁ + 4cᵢ + cᵢ₊₁)/6, with control points c. This is a
-    tridiagonal system, closed by straight ends (c₋₁ = 2c₀ - c₁).
+    tridiagonal system, closed by straight ends (c₋₁ = 2c₀ - c₁); all curves are eliminated at once.
 
     points: shape (curves, n, 3), n ≥ 2; returns shape (curves, n + 2, 3)
     """
     count, n, _ = points.shape
     values = np.asarray(points, np.float64).transpose(1, 0, 2).reshape(n, -1)
     inner = values.copy()
-    if n > 2:
-        right = 6.0 * values[1:-1]
-        right[0] -= values[0]
-        right[-1] -= values[-1]
-        bands = np.ones((3, n - 2))
-        bands[1] = 4.0
-        inner[1:-1] = solve_banded((1, 1), bands, right, overwrite_b=True, check_finite=False)
+    share = np.zeros(n)
+    for k in range(1, n - 1):
+        share[k] = 1.0 / (4.0 - share[k - 1])
+        inner[k] = share[k] * (6.0 * values[k] - inner[k - 1])
+    for k in range(n - 2, 0, -1):
+        inner[k] -= share[k] * inner[k + 1]
     controls = np.concatenate([2 * inner[:1] - inner[1:2], inner, 2 * inner[-1:] - inner[-2:-1]])
     return np.ascontiguousarray(controls.reshape(n + 2, count, -1).transpose(1, 0, 2))
 

@@ -12,12 +12,11 @@ from fastapi import FastAPI, Request, Response, WebSocket, WebSocketDisconnect
 from fastapi.staticfiles import StaticFiles
 from starlette.middleware.base import RequestResponseEndpoint
 
-from ringlet.data.errors import UserError
+from ringlet.data.errors import UserError, failure
 from ringlet.viewer import protocol
 from ringlet.viewer.pages import Page
 from ringlet.viewer.session import Session
 from ringlet.viewer.wire import trouble, unpack
-from ringlet.viewer.worker import failure
 
 STATIC = Path(__file__).with_name("static")
 LOOPBACK = ("localhost", "127.0.0.1", "[::1]")

@@ -9,8 +9,6 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from typing import Any, Generic, TypeVar
 
-from ringlet.data.errors import line_of, one_line
-
 Task = TypeVar("Task")
 
 
@@ -56,17 +54,6 @@ class SerialWorker:
 def _log_exception(future: Future[Any]) -> None:
     if not future.cancelled() and (error := future.exception()) is not None:
         log.error("the review could not go on", exc_info=error)
-
-
-def failure(what: str, error: Exception) -> str:
-    """The message on a call that failed; a mistake in Ringlet is logged.
-
-    what: what could not be done, for the log
-    """
-    if (line := line_of(error)) is not None:
-        return line
-    log.error(what, exc_info=error)
-    return one_line(f"this is a mistake in Ringlet ({type(error).__name__}: {error}); see the terminal")
 
 
 class Timer:

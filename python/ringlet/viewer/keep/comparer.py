@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
+from ringlet.data.errors import failure
 from ringlet.data.regular import read_text
 from ringlet.groom import Recipe
 from ringlet.viewer import protocol
@@ -19,7 +20,7 @@ from ringlet.viewer.publisher import Publisher, SendQueue
 from ringlet.viewer.show.display_groom import GroomEvaluator
 from ringlet.viewer.show.viewport import Viewport
 from ringlet.viewer.wire import pack, trouble
-from ringlet.viewer.worker import LatestTaskWorker, Stale, failure
+from ringlet.viewer.worker import LatestTaskWorker, Stale
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ringlet.data.errors import failure
 from ringlet.viewer import protocol
 from ringlet.viewer.keep.share_page import make_page
 from ringlet.viewer.keep.share_review import review_of
@@ -15,7 +16,7 @@ from ringlet.viewer.project import Project
 from ringlet.viewer.publisher import SendQueue
 from ringlet.viewer.show.lights import live_rigs_of
 from ringlet.viewer.wire import pack, trouble
-from ringlet.viewer.worker import LatestTaskWorker, failure
+from ringlet.viewer.worker import LatestTaskWorker
 
 
 @dataclass(frozen=True)

@@ -6,13 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ringlet.data.errors import failure
 from ringlet.groom import Groom
 from ringlet.shot import Shot
 from ringlet.sim.motion_words import describe_lock
 from ringlet.viewer import protocol
 from ringlet.viewer.publisher import SendQueue
 from ringlet.viewer.wire import pack
-from ringlet.viewer.worker import LatestTaskWorker, failure
+from ringlet.viewer.worker import LatestTaskWorker
 
 
 @dataclass(frozen=True)

@@ -11,14 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet.api.shots import start_motion
-from ringlet.data.errors import UserError
+from ringlet.data.errors import UserError, failure
 from ringlet.data.precision import compact
 from ringlet.shot import Shot
 from ringlet.sim.motion import Motion
 from ringlet.viewer.play.runs import Run, Swing, Take, inputs
 from ringlet.viewer.play.stage import Stage
 from ringlet.viewer.show.scene import FrameState
-from ringlet.viewer.worker import failure
 
 MAX_CHECKPOINT_BYTES = 1_500_000_000  # memory for the checkpoints of frames
 MAX_TAKES = 8  # earlier takes of a groom that are kept

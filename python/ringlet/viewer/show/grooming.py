@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ringlet.data.errors import UserError
+from ringlet.data.errors import UserError, failure
 from ringlet.groom import Recipe
 from ringlet.viewer import protocol
 from ringlet.viewer.files.document import Document
@@ -22,7 +22,7 @@ from ringlet.viewer.show.progress_report import ProgressReport
 from ringlet.viewer.show.viewport import Viewport, measured
 from ringlet.viewer.show.work import too_large
 from ringlet.viewer.wire import pack
-from ringlet.viewer.worker import LatestTaskWorker, Stale, failure
+from ringlet.viewer.worker import LatestTaskWorker, Stale
 
 PROGRESS_AFTER = 0.6  # time from which the progress of a groom is shown [s]
 
