@@ -12,11 +12,12 @@ import pytest
 from ringlet import Loop, recorded_loops, run_bench
 
 BENCH = Path(__file__).parents[2] / "bench"
-sys.path.insert(0, str(BENCH))  # it uses another benchmark
 SPEC = importlib.util.spec_from_file_location("serial_bench", BENCH / "serial.py")
 assert SPEC is not None and SPEC.loader is not None
 serial = importlib.util.module_from_spec(SPEC)
+sys.path.insert(0, str(BENCH))  # it uses another benchmark
 SPEC.loader.exec_module(serial)
+sys.path.remove(str(BENCH))  # there is one with the name of a package
 
 
 def loop(chunks: list[float], *, before: float = 0.0, dynamic: bool = True) -> Loop:
