@@ -34,7 +34,6 @@ from .api.hairs import write_hairs as write_hairs
 from .api.loops import Loop as Loop
 from .api.loops import empty_loop_time as empty_loop_time
 from .api.loops import recorded_loops as recorded_loops
-from .api.loops import threads as threads
 from .api.motion import motion_json as motion_json
 from .api.motion import motion_table as motion_table
 from .api.motion import motion_words as motion_words
@@ -58,6 +57,7 @@ from .api.shots import rest_place as rest_place
 from .api.shots import simulate as simulate
 from .api.shots import write_loft as write_loft
 from .api.shots import write_simulation as write_simulation
+from .api.threads import threads as threads
 from .api.threads import use_threads as use_threads
 from .api.upgrades import Upgrade as Upgrade
 from .api.upgrades import upgrade as upgrade

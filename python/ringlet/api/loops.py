@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet import _core
-from ringlet.api.threads import use_threads
+from ringlet.api.threads import threads
 
 
 class Loop(NamedTuple):
@@ -44,17 +44,6 @@ def recorded_loops() -> Iterator[list[list[Loop]]]:
             steps.append(step)
             step = []
         begin = end
-
-
-@contextmanager
-def threads(count: int) -> Iterator[None]:
-    """In the block the core uses so many threads."""
-    before = _core.thread_count()
-    use_threads(count)
-    try:
-        yield
-    finally:
-        _core.set_thread_count(before)
 
 
 def empty_loop_time(turns: int = 2000) -> float:
