@@ -35,6 +35,7 @@ step "C++ tests" cpp_tests
 step "lints" tools/lint.sh &
 step "documents" tools/docs.sh &
 step "counts of instructions and calls" $bin/python -m pytest -rs tests/counts & # with valgrind, where there is one
+step "tests of the page" tools/web.sh test & # in a DOM, without a browser
 step "Python tests" pytests tests/python
 step "physics tests" pytests tests/physics
 step "browser tests" pytests -rs tests/browser # in headless Chromium; where there is none they are skipped, and say so
@@ -44,7 +45,7 @@ printf '\nThe slowest tests:\n'
 grep -hE '^[0-9.]+s (call|setup|teardown) ' "$results"/*.log | sort -rn | head -n 8
 
 if [ -s "$results/failed" ]; then
-    printf '\nRinglet: %d of 7 steps failed: %s\n' "$(wc -l <"$results/failed")" "$(paste -sd, "$results/failed")"
+    printf '\nRinglet: %d of 8 steps failed: %s\n' "$(wc -l <"$results/failed")" "$(paste -sd, "$results/failed")"
     exit 1
 fi
 printf '\nRinglet: everything holds (%d s).\n' $SECONDS

@@ -165,6 +165,12 @@ class Review:
         """Waits until panels and picture have their sizes."""
         self.until("ringlet.laidOut")
 
+    def locks(self) -> np.ndarray:
+        """Points of the locks where they are drawn, shape (locks, points, 3)."""
+        hair = "ringlet.viewer.hair.a"
+        points = self.get(f"Array.from({hair}.placed)")
+        return np.reshape(points, (self.get(f"{hair}.locks.ids.length"), -1, 3))
+
     def picture(self) -> np.ndarray:
         """Pixels of the canvas, shape (height, width, 3)."""
         self.laid_out()

@@ -108,68 +108,6 @@ def test_a_slider_changes_picture_and_recipe_and_undo_reverts_both(opened: Any):
     assert not review.errors
 
 
-def test_a_ramp_is_edited_by_its_points(opened: Any):
-    review: Review = opened()
-    review.page.locator('[data-setting="curl.width"] summary', has_text="along the hair").click()
-    ramp = review.page.locator('[data-setting="curl.width.ramp"] svg.ramp')
-    box = ramp.bounding_box()
-    review.page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.3 * box["height"])
-    review.page.mouse.down()
-    review.page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.8 * box["height"], steps=3)
-    review.page.mouse.up()
-    review.answered()
-    width = tomllib.loads(review.text())["curl"]["width"]
-    assert width["value"] == 1.0 and len(width["ramp"]) == 3
-    assert abs(width["ramp"][1][0] - 0.5) < 0.05 and width["ramp"][1][1] < 0.5
-    ramp.locator("circle").nth(1).focus()
-    review.page.keyboard.press("Delete")
-    review.until("ringlet.model.documents.recipe.said.curl.width.ramp.length == 2")
-
-
-def test_operators_are_added_muted_moved_and_removed(opened: Any):
-    review: Review = opened()
-    page = review.page
-    for name in ("scraggle", "volume"):
-        page.get_by_label("Add an operator").select_option(name)
-        review.until(f"ringlet.model.documents.recipe.stages.some(stage => stage.op == '{name}')")
-    page.locator('[data-stage="shape/1"]').hover()
-    page.get_by_label("Move volume up").click()
-    review.until("ringlet.model.documents.recipe.stages[2].op == 'volume'")
-    page.locator('[data-stage="shape/1"]').hover()
-    page.get_by_label("Mute scraggle").click()
-    review.until("ringlet.model.documents.recipe.stages[3].muted")
-    assert [operator["op"] for operator in tomllib.loads(review.text())["shape"]] == ["volume", "scraggle"]
-    page.locator('[data-stage="shape/0"]').hover()
-    page.get_by_label("Remove volume").click()
-    review.until("ringlet.model.documents.recipe.stages[2].op == 'scraggle'")
-    assert not review.errors
-
-
-def test_a_lock_is_isolated_dragged_and_returned(opened: Any):
-    review: Review = opened(viewport={"width": 1280, "height": 800})
-    page = review.page
-    review.get("ringlet.lock.choose(2)")
-    before = review.get("Array.from(ringlet.viewer.hair.a.locks.points)")
-    page.get_by_role("button", name="Isolate").click()
-    review.until("ringlet.viewer.hair.a.locks.marked[2] == 1")
-    review.settled()
-    dot = page.locator(".handles circle").nth(4)
-    box = dot.bounding_box()
-    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
-    page.mouse.down()
-    page.mouse.move(box["x"] + 40, box["y"] - 30, steps=4)
-    page.mouse.up()
-    review.until("ringlet.model.documents.recipe.said.edit?.[0]?.move?.some(move => move.falloff)")
-    review.settled()
-    after = np.array(review.get("Array.from(ringlet.viewer.hair.a.locks.points)")).reshape(8, -1, 3)
-    moved = np.linalg.norm(after - np.array(before).reshape(8, -1, 3), axis=2)
-    assert moved[2, -1] > 0.005 and moved[2, 0] == 0.0
-    assert np.delete(moved, 2, axis=0).max() < 1e-6
-    page.get_by_role("button", name="Reset lock").click()
-    review.until("!ringlet.model.documents.recipe.said.edit")
-    assert not review.errors
-
-
 def test_saving_writes_the_file_and_a_new_page_shows_it(opened: Any, folder: Path, serve: Any):
     server = serve("small.recipe.toml")
     review: Review = opened(server)
@@ -241,45 +179,6 @@ def test_the_plane_of_symmetry_is_seen_while_a_brush_works_on_both_sides(opened:
     both.check()
     review.page.keyboard.press("b")  # the brush is put away, and the plane with it
     assert not review.get("ringlet.viewer.guides.plane.visible")
-
-
-def test_a_value_is_set_for_one_lock_and_reverted(opened: Any):
-    review: Review = opened()
-    before = np.array(review.get("Array.from(ringlet.viewer.hair.a.locks.points)")).reshape(8, -1)
-    review.get("ringlet.lock.choose(2)")
-    review.page.get_by_role("switch", name="values of this lock alone").check()
-    review.drag(review.slider("curl.width"), 0.35, 0.9)
-    review.until("ringlet.model.documents.recipe.said.curl.width.lock")
-    review.settled()
-    after = np.array(review.get("Array.from(ringlet.viewer.hair.a.locks.points)")).reshape(8, -1)
-    moved = np.abs(after - before).max(axis=1)
-    assert moved[2] > 0.001 and np.delete(moved, 2).max() == 0.0
-    review.page.get_by_label("Remove its own curl width").click()
-    review.until("!Object.keys(ringlet.model.documents.recipe.said.curl.width.lock ?? {}).length")
-    assert not review.errors
-
-
-def test_a_value_of_several_locks_is_set_and_reverted_in_one_step(opened: Any):
-    review: Review = opened()
-    before = np.array(review.get("Array.from(ringlet.viewer.hair.a.locks.points)")).reshape(8, -1)
-    ids = review.get("[2, 5].map((row) => String(ringlet.viewer.hair.a.locks.ids[row]))")
-    change = f"{{ kind: 'set', changes: [[['curl', 'pitch', 'lock', '{ids[0]}'], 2]], gesture: 9 }}"
-    review.get(f"(ringlet.lock.choose(2, 5), ringlet.model.say({change}))")
-    review.page.get_by_role("switch", name="values of these locks alone").check()
-    review.drag(review.slider("curl.width"), 0.35, 0.9)
-    review.until("Object.keys(ringlet.model.documents.recipe.said.curl.width.lock ?? {}).length === 2")
-    review.settled()
-    after = np.array(review.get("Array.from(ringlet.viewer.hair.a.locks.points)")).reshape(8, -1)
-    moved = np.abs(after - before).max(axis=1)
-    assert moved[[2, 5]].min() > 0.001 and np.delete(moved, [2, 5]).max() == 0.0
-    listed = review.page.locator(".lock .own").first.locator("li").all_inner_texts()
-    assert any("curl pitch" in one and "of 1 of 2" in one for one in listed)
-    assert any("curl width" in one and " of " not in one for one in listed)
-    review.page.get_by_label("Remove its own curl width").click()
-    review.until("!Object.keys(ringlet.model.documents.recipe.said.curl.width.lock ?? {}).length")
-    review.page.keyboard.press("Control+z")
-    review.until("Object.keys(ringlet.model.documents.recipe.said.curl.width.lock ?? {}).length === 2")
-    assert not review.errors
 
 
 def test_regions_and_overlays_are_chosen_from_lists(opened: Any, folder: Path):

@@ -55,9 +55,9 @@ def test_every_stage_of_a_recipe_is_accessible(opened: Any):
 def test_every_tool_of_a_recipe_is_accessible(opened: Any):
     review: Review = opened(viewport={"width": 1280, "height": 800})
     page, checked = review.page, Checked(review)
-    review.get("ringlet.brush.show(true)")
+    review.get("ringlet.tools.brush.show(true)")
     checked.check("sculpting")
-    review.get("ringlet.brush.show(false)")
+    review.get("ringlet.tools.brush.show(false)")
     page.get_by_role("button", name="Camera, light and sheet").click()
     checked.check("camera and light")
     page.keyboard.press("Escape")

@@ -48,10 +48,10 @@ def test_controls_are_labelled_legible_and_reachable_by_keyboard(opened: Any):
     review: Review = opened(pixels=0.2)
     review.get("ringlet.lock.choose(2)")
     assert review.page.evaluate(REACH) == {"nameless": [], "faint": []}
-    review.get("ringlet.brush.show(true)")
+    review.get("ringlet.tools.brush.show(true)")
     assert review.page.evaluate(REACH) == {"nameless": [], "faint": []}
     review.page.keyboard.press("Escape")
-    assert not review.get("ringlet.brush.on")
+    assert not review.get("ringlet.tools.brush.on")
     dark = review.picture().mean()
     review.page.get_by_label("Dark or light theme").press("Enter")
     assert review.get("document.documentElement.dataset.theme") == "light"
@@ -118,18 +118,6 @@ def test_pictures_and_movies_are_saved(opened: Any):
     with review.page.expect_download() as movie:
         film.click()
     assert Path(movie.value.path()).stat().st_size > 1000
-
-
-def test_the_list_of_views_says_when_the_camera_has_left_them(opened: Any):
-    review: Review = opened()
-    views = review.page.get_by_label("View from")
-    views.select_option("Left")
-    first = review.get("ringlet.viewer.view.place")
-    review.get("ringlet.viewer.key('ArrowLeft')")
-    assert views.evaluate("e => e.selectedOptions[0].text") == "free view"
-    assert review.get("ringlet.viewer.view.place") != first
-    views.select_option("Left")
-    assert review.get("ringlet.viewer.view.place") == pytest.approx(first)
 
 
 @pytest.mark.parametrize("width, height", [(820, 1180), (1180, 820)])

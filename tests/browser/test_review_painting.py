@@ -32,7 +32,7 @@ def test_a_map_is_painted_and_a_parting_drawn_on_the_scalp(opened: Any, folder: 
     page.keyboard.press("Control+z")
     review.until("!ringlet.model.documents.recipe.undo")
     page.keyboard.press("Escape")
-    assert not review.get("ringlet.paint.on")
+    assert not review.get("ringlet.tools.paint.on")
     review.get("ringlet.model.draw(['guides', 'part_line', 'curve'], 'parting')")
     mouse.move(x - 40, y)
     mouse.down()

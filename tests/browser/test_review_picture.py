@@ -113,61 +113,6 @@ def test_a_picture_at_rest_adds_drawings_until_all_hairs_are_in_it(opened: Any):
     )
 
 
-PACE = """(() => {
-    const pace = new ringlet.viewer.pace.constructor(SOFTWARE), hairs = 100000, times = [];
-    Object.assign(pace, { resolved: 0.2, hairs });
-    for (let picture = 0; picture < 40; picture++) {
-        const portion = pace.next(MOVING);
-        times.push(portion.fraction * portion.drawings * hairs * PER_HAIR + pace.scale ** 2 * ALL_PIXELS);
-        pace.took(times.at(-1), portion, MOVING);
-    }
-    return times.slice(20);
-})()"""
-
-
-def test_pictures_are_fluent_while_something_moves(opened: Any):
-    review: Review = opened()
-
-    def times(**values: Any) -> list[float]:
-        script = PACE
-        for name, value in {"ALL_PIXELS": 0, **values}.items():
-            script = script.replace(name, str(value))
-        return review.get(script)
-
-    # 100 000 hairs, of which a card draws 1 000 a millisecond, and a processor 20
-    assert max(times(SOFTWARE="false", MOVING="true", PER_HAIR=0.001)) < 33
-    assert max(times(SOFTWARE="true", MOVING="true", PER_HAIR=0.02)) < 100
-    # hairs that cover many pixels, in software
-    assert max(times(SOFTWARE="true", MOVING="true", PER_HAIR=0.001, ALL_PIXELS=800)) < 100
-
-
-def test_slices_cover_the_work_once_and_none_is_long(opened: Any):
-    review: Review = opened(viewport={"width": 420, "height": 300}, pixels=None)
-    parts, times = review.get("""(() => {
-        const { painter, pace } = ringlet.viewer, parts = [], times = [];
-        const slices = Object.assign(new painter.slices.constructor(), pace.slice(false));
-        const work = slices.draw("hairs", 100000, (first, count) => parts.push([first, count]));
-        for (let took = 0; !work.next(took).done; ) times.push((took = 0.02 * parts.at(-1)[1]));
-        return [parts, times];
-    })()""")
-    assert [first for first, _ in parts] == list(np.cumsum([0, *(count for _, count in parts)])[:-1])
-    assert sum(count for _, count in parts) == 100_000
-    assert len(parts) < 200 and max(times) < 60
-
-
-def test_slices_of_a_busy_machine_come_to_their_end(opened: Any):
-    """Each slice takes half a second there, however little it draws."""
-    counts = opened().get("""[1, 2].map(() => {
-        const slices = ringlet.viewer.painter.slices, drawing = slices.drawing, drawn = [];
-        slices.drawing = 30;
-        const work = slices.draw("rows", 640, (first, count) => drawn.push(count));
-        while (!work.next(500).done);
-        slices.drawing = drawing;
-        return drawn;
-    })""")
-    assert [sum(drawn) for drawn in counts] == [640, 640] and max(map(len, counts)) <= 65
-
-
 def test_a_picture_in_slices_is_that_of_one_slice(opened: Any):
     review: Review = opened(viewport={"width": 420, "height": 300}, pixels=1)
     review.get("ringlet.viewer.drawNow()")

@@ -56,40 +56,6 @@ def test_ten_frames_are_simulated_and_scrubbed(opened: Any, folder: Path):
     assert not review.errors
 
 
-def test_frames_are_played_between_in_and_out_points_at_a_rate(opened: Any):
-    review: Review = opened("small.shot.toml")
-    review.page.get_by_role("button", name="Run", exact=True).click()
-    review.until("ringlet.timeline.count == 4 && ringlet.model.timeline.state == 'done'")
-    canvas = review.page.locator("main canvas")
-    for frame, key in ((2, "i"), (3, "o")):
-        review.get(f"ringlet.timeline.show({frame})")
-        canvas.press(key)
-    assert review.page.locator(".left-out").count() == 2
-    assert "plays 2 to 3" in review.page.locator(".frame-readout").inner_text()
-    canvas.press("End")
-    assert review.get("ringlet.timeline.current") == 3
-    camera = review.get("ringlet.viewer.camera.position.toArray()")
-    review.page.get_by_label("Frame", exact=True).press("ArrowLeft")  # steps, and does not orbit
-    assert review.get("ringlet.timeline.current") == 2
-    assert review.get("ringlet.viewer.camera.position.toArray()") == camera
-    review.get(
-        """(() => {
-            const { timeline } = ringlet, { show } = timeline;
-            window.played = [];
-            timeline.show = (frame) => (show.call(timeline, frame), played.push(timeline.current));
-        })()"""
-    )
-    review.page.get_by_label("Playback rate (frames per second)").select_option("60")
-    canvas.press(" ")
-    review.until("played.length >= 20")
-    assert review.get("[...new Set(played)].sort()") == [2, 3]
-    canvas.press(" ")
-    review.get("ringlet.timeline.show(2)")
-    canvas.press("i")
-    assert review.page.locator(".left-out").count() == 1
-    assert not review.errors
-
-
 def test_a_changed_cloth_material_is_simulated(opened: Any, folder: Path):
     write_wear(folder)
     shot = folder / "small.shot.toml"
@@ -136,32 +102,6 @@ def test_a_changed_cloth_material_is_simulated(opened: Any, folder: Path):
     rest = review.get("Array.from(ringlet.viewer.stage.bodies.get(1).rest)")
     review.until("!ringlet.timeline.count")
     assert np.array_equal(scarf("a").ravel(), rest)  # cloth at rest, like the hair
-    assert not review.errors
-
-
-def test_the_page_keeps_only_frames_near_the_current_one(opened: Any, folder: Path):
-    groom = ringlet.build_groom(folder / "small.recipe.toml")
-    ringlet.write_groom(groom, folder / "groom.usda")
-    numbers = np.arange(1.0, 301.0)
-    points = (groom.locks.points + 1e-4 * numbers[:, None, None] * (0, 1, 0)).astype(np.float32)
-    ringlet.write_cache(ringlet.Cache(numbers, points), folder / "groom.usda", folder / "cache.usda")
-    review: Review = opened("cache.usda")
-    review.until("ringlet.timeline.count == 300 && ringlet.timeline.settled")
-    review.get("ringlet.timeline.show(100)")
-    review.until("ringlet.timeline.settled && ringlet.timeline.frames.shot.has(115)")
-    kept = review.get("[...ringlet.timeline.frames.shot.keys()].filter((frame) => frame > 20 && frame < 299)")
-    assert sorted(kept) == list(range(100, 116))
-    review.page.get_by_label("Play the simulated frames").click()
-    review.until("ringlet.timeline.frame > 130 && ringlet.timeline.frame < 300")
-    assert not review.errors
-
-
-def test_a_cache_says_that_it_has_no_chart_of_its_swing(opened: Any, folder: Path):
-    write_roofed(folder)
-    review: Review = opened("cache.usdc")
-    review.page.get_by_role("button", name="Swing and earlier runs").click()
-    assert "A cache holds positions, not speeds" in review.page.locator(".swing").inner_text()
-    assert not review.page.locator(".swing-plot svg").is_visible()
     assert not review.errors
 
 

@@ -128,15 +128,6 @@ def test_the_difference_of_two_looks_is_where_they_differ(opened: Any):
     assert not review.errors
 
 
-def test_a_page_that_follows_sees_snapshots_and_takes_some(opened: Any, serve: Any):
-    server = serve("small.recipe.toml")
-    lead: Review = opened(server)
-    follower: Review = opened(server)
-    take(follower)
-    lead.until("ringlet.model.snapshots.length == 1")
-    assert follower.page.get_by_role("button", name="Load: use its settings").is_disabled()
-
-
 @pytest.mark.parametrize("width, height", [(390, 844), (1280, 800)])
 def test_the_tray_covers_no_control(opened: Any, width: int, height: int):
     review: Review = opened(viewport={"width": width, "height": height}, has_touch=True, is_mobile=width != 1280)

@@ -235,9 +235,16 @@ def test_only_an_isolated_lock_is_dragged(folder: Path):
         one.send(kind="drag", lock=lock, point=20, to=[0, 0.2, 0], gesture=1)
         assert "isolate" in one.receive("trouble")["message"]
         one.send(kind="isolate", locks=[lock])
-        assert one.receive("locks", draft=False)["marked"][0] == 1
+        before = one.receive("locks", draft=False)
+        assert before["marked"][0] == 1
+        tip = before["points"].reshape(8, 40, 3)[0, -1]
+        one.send(kind="drag", lock=lock, point=39, to=(tip + [0.01, 0, 0]).tolist(), falloff=0.3, gesture=2)
+        after = one.receive("locks", draft=False)["points"] - before["points"]
+        moved = np.linalg.norm(after.reshape(8, 40, 3), axis=2)
+        assert moved[0, -1] > 0.005 and moved[0, 0] == 0 and moved[1:].max() < 1e-6
         one.send(kind="isolate", locks=[lock], out=False)
-        assert one.receive("locks", draft=False)["marked"][0] == 0
+        back = one.receive("locks", draft=False)
+        assert back["marked"][0] == 0 and "edit" not in one.latest("document", dirty=False)["said"]
 
 
 def stroke(one: Page, guides: dict[str, Any], gesture: int = 7, **more: Any) -> None:
