@@ -48,6 +48,7 @@ void bind_cloth(nb::module_ &module);
 void bind_geometry(nb::module_ &module);
 void bind_groom(nb::module_ &module);
 void bind_linear(nb::module_ &module);
+void bind_live(nb::module_ &module);
 void bind_rest(nb::module_ &module);
 void bind_scene(nb::module_ &module);
 void bind_strand(nb::module_ &module);
@@ -74,6 +75,7 @@ NB_MODULE(_core, module) {
     bind_linear(module);
     bind_rest(module);
     bind_strand(module);
+    bind_live(module);
     bind_cloth(module);
     bind_scene(module);
 }

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <cstring>
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -143,18 +145,22 @@ void bind_strand(nb::module_ &module) {
             "Puts the strands at rest at these positions [m], shape (n, 3), and forgets their history.")
         .def(
             "step",
-            [](Strands &self, Array3<double> targets, Array3<double> forces, const SceneStep &settings) {
+            [](Strands &self, Array3<double> targets, Array3<double> forces, const SceneStep &settings,
+               const std::optional<std::tuple<Array3<double>, Array1<double>, Array1<double>>> &planes) {
+                StrandPlanes at;
+                if (planes) at = {vectors<Vec3>(std::get<0>(*planes)), view(std::get<1>(*planes)), view(std::get<2>(*planes))};
                 {
                     nb::gil_scoped_release release;
                     step_strands(self.model, self.state(), vectors<Vec3>(targets), vectors<Vec3>(forces), settings.strands,
-                                 self.reports);
+                                 self.reports, at);
                 }
                 const size_t rows = self.reports.size();
                 return to_numpy<double>(std::vector<StrandReport>(self.reports), {rows, column_count<StrandReport>});
             },
-            "targets"_a, "forces"_a, "settings"_a,
-            "One time step; targets: where held vertices are at its end [m], shape (n, 3). Returns one report row per strand "
-            "(REPORT).")
+            "targets"_a, "forces"_a, "settings"_a, "planes"_a = nb::none(),
+            "One time step; targets: where held vertices are at its end [m], shape (n, 3); planes: normals (n, 3), offsets "
+            "[m]\n"
+            "and stiffnesses [N/m], (n,), of one in front of each vertex. Returns one report row per strand (REPORT).")
         .def_prop_ro(
             "memory", [](Strands &self) { return memory_of(self.state()); },
             "All that the next step depends on besides the model, as arrays by name.")

@@ -16,7 +16,7 @@ from setting_pictures import write_setting_pictures
 import ringlet
 from ringlet import validate
 
-PIPELINE = ("grooms", "check", "shots", "caches", "hairs", "pictures")  # modules of ringlet.api
+PIPELINE = ("grooms", "check", "shots", "live", "caches", "hairs", "pictures")  # modules of ringlet.api
 
 
 def write_references(folder: Path) -> None:

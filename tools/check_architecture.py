@@ -17,6 +17,7 @@ CORE = {
     "math": set(),
     "geometry": {"math"},
     "groom": {"geometry", "math"},
+    "live": {"geometry", "math"},
     "energy": {"geometry", "math"},
     "linear": {"math"},
     "dynamics": {"linear", "math"},
@@ -41,6 +42,7 @@ PYTHON = {
     "motion": {"data"},
     "sim": {"data", "_core", "shot", "motion"},
     "rest": {"data", "_core", "shot", "sim"},
+    "live": {"data", "_core", "shot", "motion", "sim", "rest"},
     "validate": {"data", "_core", "shot", "sim", "groom", "motion"},
     "io": {"data", "deform"},
     "picture": {"data"},
@@ -53,6 +55,7 @@ PYTHON = {
         "groom",
         "shot",
         "sim",
+        "live",
         "rest",
         "motion",
         "validate",
@@ -61,10 +64,10 @@ PYTHON = {
         "report",
         API,  # for the doctor, which starts where a package is missing
     },
-    "viewer": {"data", "_core", "groom", "shot", "sim", "io", "picture", "api"},
+    "viewer": {"data", "_core", "groom", "shot", "sim", "live", "io", "picture", "api"},
     "host": {"data", "groom", "shot", "io", "report", "api", "viewer"},
     "farm": {"data", "groom", "shot", "report", "api"},
-    API: {"data", "api", "groom", "shot", "sim", "rest", "viewer", "farm", "host"},
+    API: {"data", "api", "groom", "shot", "sim", "live", "rest", "viewer", "farm", "host"},
     "cli": {API},
 }
 # Subfolder of python/ringlet/viewer → subfolders that it may import. Its top-level modules may import all of them.

@@ -31,6 +31,8 @@ from .api.grooms import write_groom as write_groom
 from .api.hairs import build_hairs as build_hairs
 from .api.hairs import measure_hairs as measure_hairs
 from .api.hairs import write_hairs as write_hairs
+from .api.live import head_motion as head_motion
+from .api.live import live_shot as live_shot
 from .api.loops import Loop as Loop
 from .api.loops import empty_loop_time as empty_loop_time
 from .api.loops import recorded_loops as recorded_loops
@@ -80,6 +82,7 @@ from .farm import wedge as wedge
 from .farm import write_wedge_template as write_wedge_template
 from .groom.stages import Memory as Memory
 from .host import serve as serve
+from .live import Live as Live
 from .rest.loft import Loft as Loft
 from .shot.cloth import ClothMaterial as ClothMaterial
 from .shot.contact import Contact as Contact

@@ -50,6 +50,10 @@ template <class Objective> struct RandomStrand {
                 r.fade = 0.7;
             }
             r.damped_strain = 0.1;
+            if constexpr (has_plane<typename Objective::Row>) {
+                const Vec<double> normal = random_unit(random);
+                r.plane = {normal, dot(normal, p) + (i % 2 ? 0.2 : -0.2), 3 * uniform(random)}; // behind every other one
+            }
             r.reference.tangent = random_unit(random);
             r.reference.normal = perpendicular(r.reference.tangent);
             for (int k = 0; k < 3; ++k) x[Objective::dofs * i + k] = p[k];
@@ -143,6 +147,8 @@ BOOST_AUTO_TEST_CASE(hinge_with_history) { derivatives_agree_with_differences<Hi
 BOOST_AUTO_TEST_CASE(hinge_with_least_energy) { derivatives_agree_with_differences<HingeObjective<double, false>>(); }
 
 BOOST_AUTO_TEST_CASE(material_frame) { derivatives_agree_with_differences<RodObjective<double>>(); }
+
+BOOST_AUTO_TEST_CASE(material_frame_at_planes) { derivatives_agree_with_differences<RodObjective<double, PlaneRow<double>>>(); }
 
 // Each free edge rotates about an axis of its own, by about half a radian.
 BOOST_AUTO_TEST_CASE(edges_that_rotate_keep_their_lengths) {

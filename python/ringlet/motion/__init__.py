@@ -3,6 +3,7 @@
 from ringlet.motion.coils import CoilLengths, SeenMotion, seen_motion
 from ringlet.motion.modes import modes_of
 from ringlet.motion.search import find_stiffness
+from ringlet.motion.spring import HelicalSpring
 from ringlet.motion.stepping import Integrator, Stepping, advised_steps
 from ringlet.motion.words import STIFFNESS, HangingLocks, Words
 
@@ -10,6 +11,7 @@ __all__ = [
     "STIFFNESS",
     "CoilLengths",
     "HangingLocks",
+    "HelicalSpring",
     "Integrator",
     "SeenMotion",
     "Stepping",

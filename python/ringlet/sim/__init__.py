@@ -7,6 +7,7 @@ from ringlet.sim.motion import Motion
 from ringlet.sim.obstacle import Body, Obstacle
 from ringlet.sim.run_inputs import changed_input, run_inputs
 from ringlet.sim.scene import Scene
+from ringlet.sim.shot_strands import with_words
 from ringlet.sim.simulate import StoredTouches, check_frames, play, replay, simulate
 from ringlet.sim.strands import Strands
 from ringlet.sim.work import heavy_work
@@ -32,4 +33,5 @@ __all__ = [
     "replay",
     "run_inputs",
     "simulate",
+    "with_words",
 ]

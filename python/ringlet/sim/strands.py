@@ -16,6 +16,8 @@ from ringlet.shot.solver import Continuation, Solver
 from ringlet.shot.variation import VARIATIONS
 from ringlet.sim.core import Vector, assign, step_settings
 
+Planes = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]
+
 
 @dataclass
 class Strands:
@@ -113,10 +115,13 @@ class Strands:
         wind: Vector = (0.0, 0.0, 0.0),
         forces: NDArray[np.floating] | None = None,
         solver: Solver | None = None,
+        planes: Planes | None = None,
     ) -> dict[str, NDArray[np.float64]]:
         """Advances by ``dt`` [s]; held vertices end where ``targets`` [m], shape (n, 3), has them.
 
         forces: on each vertex besides gravity and air [N], shape (n, 3)
+        planes: one in front of each vertex: unit normals, shape (n, 3), distances from the origin along them [m], and
+                stiffnesses against what comes behind [N/m], shapes (n,). Only material frames have them
         Returns the report of every strand, one array of shape (count,) per quantity (see ``_core.REPORT``).
         """
         solver = solver or Solver()
@@ -124,6 +129,7 @@ class Strands:
             np.ascontiguousarray(targets, np.float64),
             self._no_forces if forces is None else np.ascontiguousarray(forces, np.float64),
             step_settings(solver, dt, gravity, wind),
+            planes,
         )
         return dict(zip(_core.REPORT, rows.T, strict=True))
 

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from ringlet.data.curves import Curves
 from ringlet.data.mesh import Mesh
 from ringlet.groom import PRESETS, make_groom, parse_recipe
-from ringlet.motion import CoilLengths, HangingLocks, Integrator, Stepping
+from ringlet.motion import CoilLengths, HangingLocks, HelicalSpring, Integrator, Stepping
 from ringlet.shot.material import Material
 from ringlet.shot.solver import Solver
 from ringlet.sim.hanging import hang
@@ -164,8 +164,8 @@ def spring(turns: int) -> Iterator[tuple[str, float, float]]:
     material = rod_material()
     angle, length = np.arctan2(pitch, 2.0 * np.pi * radius), turns * np.hypot(2.0 * np.pi * radius, pitch)
     bend = bending_stiffness(material)
-    flexibility = radius**2 * (np.cos(angle) ** 2 / (material.twist_ratio * bend) + np.sin(angle) ** 2 / bend)
-    bounce = 0.25 / (length * np.sqrt(line_density(material) * flexibility))
+    coil = HelicalSpring(radius, np.sin(angle), bend, material.twist_ratio * bend)
+    bounce = 0.25 / (length * np.sqrt(line_density(material) * coil.flexibility))
     words = hang(strand(points, material, 3), points, (0.0, -gravity, 0.0)).words()
     yield "bounce [Hz]", bounce, words.bounce[0]
     yield "sag", gravity / (32.0 * bounce**2) / np.linalg.norm(points[-1] - points[0]), words.sag[0]

@@ -121,9 +121,10 @@ template <class T> struct LoadBehind {
     Vec<T> force{};
     T held{};
 
-    void add(const RodRow<T> *rows, const T *x, int i, double sign) {
-        const Vec<T> at{x[4 * i], x[4 * i + 1], x[4 * i + 2]};
+    template <class Row> void add(const Row *rows, const T *x, int i, double sign) {
+        const Vec<T> at = position<4>(x, i);
         force = force + (sign * rows[i].free * rows[i].inertia) * (at - rows[i].inertia_target);
+        if constexpr (has_plane<Row>) force = force + (sign * rows[i].free) * plane_gradient(rows[i].plane, at);
         if (i == 0) return;
         const auto is_held = (rows[i].free == 0.0) & (rows[i - 1].stretch_stiffness > 0.0); // behind the tip nothing is
         held += select(is_held, constant<T>(sign), T{});
@@ -131,10 +132,10 @@ template <class T> struct LoadBehind {
 };
 
 // Takes edges and corners in order, from the root to the tip.
-template <class T> class PathCurvature {
+template <class T, class Row> class PathCurvature {
 public:
     // Of what was evaluated at x; `load`: of all vertices.
-    PathCurvature(const RodRow<T> *rows, const RodShape<T> *shapes, const T *x, const LoadBehind<T> &load)
+    PathCurvature(const Row *rows, const RodShape<T> *shapes, const T *x, const LoadBehind<T> &load)
         : rows_(rows), shapes_(shapes), x_(x), load_(load) {}
 
     // Calls add(column, rows below, value) for edge i, whose director has that spin, and for the corner before it, which has
@@ -221,7 +222,7 @@ private:
         add(frame, 4, dot(by_frame, second.by_frame));
     }
 
-    const RodRow<T> *rows_;
+    const Row *rows_;
     const RodShape<T> *shapes_;
     const T *x_;
     LoadBehind<T> load_; // of the present edge

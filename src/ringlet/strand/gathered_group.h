@@ -69,6 +69,12 @@ inline void gather_model(const LaneGather &gather, const StrandArrays &arrays, i
         set_lane(row.frame_free, k, free ? 1.0 : 0.0);
     }
 }
+inline void gather_model(const LaneGather &gather, const StrandArrays &arrays, int i, PlaneRow<Pack> &row) {
+    gather_model(gather, arrays, i, static_cast<RodRow<Pack> &>(row));
+    row.plane.normal = gather.vector(arrays.planes.normal, i);
+    row.plane.offset = gather.scalar(arrays.planes.offset, i, 0.0);
+    row.plane.stiffness = gather.scalar(arrays.planes.stiffness, i, 0.0);
+}
 inline void gather_model(const LaneGather &gather, const StrandArrays &arrays, int i, HingeRow<Pack> &row) {
     row.damped_angle = row.rest_angle;
     row.reference_delta = gather.scalar(arrays.twist, i, 0.0);

@@ -74,6 +74,11 @@ struct StrandEffort {
     double iterations, cuts, residual;
 };
 
+// A plane in front of each vertex, which resists what comes behind it (energy/strand/plane.h). Null: there are none.
+struct PlaneArrays {
+    const double *normal = nullptr, *offset = nullptr, *stiffness = nullptr;
+};
+
 // Model and state of all strands, as pointers (see strand/model.h and strand/state.h).
 struct StrandArrays : StrandCoefficients<const double *> {
     const int *offsets;
@@ -82,6 +87,7 @@ struct StrandArrays : StrandCoefficients<const double *> {
     const double *targets, *forces;
     double *positions, *velocities, *normals, *twist, *directors;
     double *last_positions, *last_velocities, *last_strains, *last_dt;
+    PlaneArrays planes; // of steps without contact, with a material frame
 };
 
 // Strands that one call of a kernel steps together, one per lane; `strands` are their numbers.

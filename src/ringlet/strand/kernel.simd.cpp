@@ -12,6 +12,8 @@
 namespace ringlet::RINGLET_SIMD {
 namespace {
 
+using RodAtPlanes = RodObjective<Pack, PlaneRow<Pack>>;
+
 // Calls work.operator()<Objective>() with the model of bend and twist that the step names.
 template <class Work> auto with_objective(const StrandStep &step, const Work &work) {
     switch (step.continuation) {
@@ -38,11 +40,12 @@ constexpr size_t group_bytes = 1024;
 int strand_lanes() { return lanes; }
 
 size_t strand_workspace_bytes(int vertices) {
-    return max(GroupMemory<HingeObjective<Pack, true>>::bytes(vertices), GroupMemory<RodObjective<Pack>>::bytes(vertices));
+    return max(GroupMemory<HingeObjective<Pack, true>>::bytes(vertices), GroupMemory<RodAtPlanes>::bytes(vertices));
 }
 
 void step_strand_group(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, void *workspace,
                        StrandReport *reports) {
+    if (arrays.planes.stiffness) return Group<RodAtPlanes>(arrays, step, group, workspace).step(reports);
     with_objective(step, [&]<class Objective>() { Group<Objective>(arrays, step, group, workspace).step(reports); });
 }
 

@@ -64,10 +64,12 @@ protected:
         shape.tangent = select<T>(point, x_axis, (1.0 / shape.length) * edge);
     }
 
-    // Of terms of positions alone whose last vertex is i: inertia.
+    // Of terms of positions alone whose last vertex is i: inertia, and planes.
     T vertex_energy(const T *x, int i) const {
         const Vec<T> offset = position(x, i) - rows_[i].inertia_target;
-        return 0.5 * rows_[i].free * rows_[i].inertia * dot(offset, offset);
+        T energy = 0.5 * rows_[i].free * rows_[i].inertia * dot(offset, offset);
+        if constexpr (has_plane<Row>) energy += rows_[i].free * plane_energy(rows_[i].plane, position(x, i));
+        return energy;
     }
 
     T edge_energy(int i, const StrandShape<T> &shape) const {
@@ -99,6 +101,12 @@ protected:
         const Row &r = rows_[i];
         add(gradient, i, r.inertia * (position(positions_, i) - r.inertia_target));
         add_diagonal(hessian, i, r.free * r.inertia + (1.0 - r.free));
+        if constexpr (has_plane<Row>) {
+            const Vec<T> at = position(positions_, i);
+            const T normal[3] = {r.plane.normal.x, r.plane.normal.y, r.plane.normal.z};
+            add(gradient, i, plane_gradient(r.plane, at));
+            hessian.add_square(dofs * i, r.free * plane_hessian(r.plane, at), normal);
+        }
     }
 
     void add_stretch(int i, T *gradient, Matrix &hessian) const {

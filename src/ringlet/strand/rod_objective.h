@@ -11,14 +11,15 @@
 namespace ringlet::RINGLET_SIMD {
 
 // Degrees of freedom of a vertex: its position and γ l̄ of the edge that begins there [m]. γ is 0 as a step begins.
-template <class T> class RodObjective : public StrandObjective<T, 4, 11, RodRow<T>, RodShape<T>> {
-    using Base = StrandObjective<T, 4, 11, RodRow<T>, RodShape<T>>;
+// In front of planes its rows are of the type PlaneRow.
+template <class T, class RowOfRod = RodRow<T>> class RodObjective : public StrandObjective<T, 4, 11, RowOfRod, RodShape<T>> {
+    using Base = StrandObjective<T, 4, 11, RowOfRod, RodShape<T>>;
     using Base::rows_, Base::shapes_, Base::vertices_;
 
 public:
     using typename Base::Matrix;
 
-    RodObjective(int vertices, RodRow<T> *rows, RodShape<T> *shapes, Safeguards = {}) : Base(vertices, rows, shapes) {}
+    RodObjective(int vertices, RowOfRod *rows, RodShape<T> *shapes, Safeguards = {}) : Base(vertices, rows, shapes) {}
 
     static constexpr double curvature_reserve = 0.1;
 
@@ -66,7 +67,7 @@ public:
     template <class Also, class Complete>
     void assemble_along_paths(T *gradient, Matrix &hessian, T curved, const Also &also, const Complete &complete) const {
         AddedTerms terms;
-        PathCurvature<T> curvature(rows_, shapes_, this->positions_, load_);
+        PathCurvature<T, RowOfRod> curvature(rows_, shapes_, this->positions_, load_);
         const auto add = [&](int column, int below, T value) {
             hessian.entry(column)[below] += value;
             also(column, below, value);

@@ -120,11 +120,19 @@ std::vector<double> stabilising_stiffness(const StrandModel &model, const Strand
 }
 
 void step_strands(const StrandModel &model, StrandState &state, View<Vec3> targets, View<Vec3> forces, const StrandStep &step,
-                  std::vector<StrandReport> &reports) {
+                  std::vector<StrandReport> &reports, const StrandPlanes &planes) {
     if (int(targets.size()) != model.vertex_count() || int(forces.size()) != model.vertex_count())
         throw std::invalid_argument("strands: targets and forces do not fit the model");
     reports.assign(model.strand_count(), StrandReport{});
-    const StrandArrays arrays = arrays_of(model, state, targets, forces);
+    StrandArrays arrays = arrays_of(model, state, targets, forces);
+    if (!planes.normal.empty()) {
+        const size_t n = planes.normal.size();
+        if (int(n) != model.vertex_count() || planes.offset.size() != n || planes.stiffness.size() != n)
+            throw std::invalid_argument("strands: planes do not fit the model");
+        if (step.continuation != Continuation::material_frame)
+            throw std::invalid_argument("strands: only material frames have planes");
+        arrays.planes = {planes.normal.data()->data(), planes.offset.data(), planes.stiffness.data()};
+    }
     for_each_group(model, [&](StrandGroup group, void *workspace) {
         StrandReport group_reports[max_lanes];
         RINGLET_DISPATCH(step_strand_group, arrays, step, group, workspace, group_reports);

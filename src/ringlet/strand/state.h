@@ -31,10 +31,16 @@ std::vector<double> stabilising_stiffness(const StrandModel &model, const Strand
 // Model and state as pointers for the kernels. All arguments must live as long as the result.
 StrandArrays arrays_of(const StrandModel &model, StrandState &state, View<Vec3> targets, View<Vec3> forces);
 
+// A plane in front of each vertex, or of none; see PlaneArrays. Only material frames have them.
+struct StrandPlanes {
+    View<Vec3> normal;
+    View<double> offset, stiffness;
+};
+
 // One time step. `targets` are the positions of held vertices at its end [m] (rows of free vertices are not read), `forces`
 // external forces on the vertices [N]. One report per strand. The result does not depend on the number of threads.
 void step_strands(const StrandModel &model, StrandState &state, View<Vec3> targets, View<Vec3> forces, const StrandStep &step,
-                  std::vector<StrandReport> &reports);
+                  std::vector<StrandReport> &reports, const StrandPlanes &planes = {});
 
 // Elastic energy [J] at these positions with relaxed material frames, and its gradient by the free vertices [N] (rows of held
 // vertices are zero). The Hessian is that of Newton's method, for one strand alone: dense, row-major, over 3 unknowns per

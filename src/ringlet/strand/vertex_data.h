@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ringlet/energy/strand/bend.h"
+#include "ringlet/energy/strand/plane.h"
 #include "ringlet/math/pack.h"
 #include "ringlet/strand/kernel.h"
 
@@ -53,6 +54,13 @@ template <class T> struct RodRow : StrandRow<T> {
     T damped_curvature1, damped_curvature2;
     T frame_free; // 1, or 0 where both ends of the edge are held and its frame with them
 };
+
+// The same in front of planes.
+template <class T> struct PlaneRow : RodRow<T> {
+    Plane<T> plane;
+};
+
+template <class Row> inline constexpr bool has_plane = requires(Row row) { row.plane; };
 
 template <class T> struct RodShape : StrandShape<T> {
     Vec<T> director;          // D of the edge

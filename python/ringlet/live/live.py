@@ -1,0 +1,371 @@
+"""Live hair: a groom that moves with its head step by step, in a small part of the time of a shot.
+
+Each lock is a rod of few vertices that is as stiff as its coil, and carries it. Contact is not simulated: neighbours
+share their velocities, and their coils are stiffer by what contact adds. docs/live.md says what is true of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ringlet import _core
+from ringlet.data.errors import UserError
+from ringlet.data.groom import Groom
+from ringlet.data.mesh import Mesh
+from ringlet.live.rods import VERTICES, Rods, Wire, places
+from ringlet.shot.material import Material
+from ringlet.shot.solver import Solver
+from ringlet.sim.core import Vector
+from ringlet.sim.cores import Cores
+from ringlet.sim.shot_strands import WANTED
+from ringlet.sim.strands import Planes, Strands
+from ringlet.sim.worn import worn_factors
+
+Array = NDArray[np.float64]
+
+GRAVITY = (0.0, -9.81, 0.0)  # [m/s²]
+CONTACT = 2.8e-8  # EI that contact adds to a lock in a crowd [N m²]: six times that of a hair
+SOLVER = Solver(newton=2, tolerance=1e-5, integrator="backward_euler")
+
+CELL, MARGIN = 0.02, 0.1  # of the grid through which neighbours share motion, and how far it goes beyond the hair [m]
+SHARE, KEEP = 0.7, 0.9  # see src/ringlet/live/shared_velocities.h
+
+DISTANCES = 0.005  # cell of the grids of distances to bodies [m]
+CLEARANCE = 5e-4  # of a coil from them [m]
+FIRM = 1000.0  # stiffness of a body, relative to the inertia of a vertex in a step
+NEAR = 0.1  # from here on a body may be met in a step [m]
+
+EASE = 0.1  # time in which a coil goes over to another groom, to 1/e [s]
+FARTHEST, FASTEST = 0.3, np.pi / 3.0  # of the head in a step [m], [rad]: beyond, hair is carried along rigidly
+NOT_RIGID = 1e-3  # deviation of a rotation from one
+
+
+class Live:
+    """The locks of a groom in motion, as rods, on a head that moves rigidly.
+
+    groom:    its locks hang still as they are groomed, under the gravity that is given here
+    material: of the locks, as ``[strands]`` of a shot has it
+    bodies:   closed meshes that move with the head, and that hair stays out of; by default the scalp
+    still:    those that stay where they are, such as a shirt
+    gravity:  [m/s²]
+    wind:     velocity of the air [m/s]
+    fps:      steps a second
+    contact:  EI that neighbours add to the bend stiffness of each lock [N m²]
+
+    All may be changed between steps, but for the rate. Raises UserError for values that are not finite.
+
+    Example::
+
+        live = ringlet.Live(ringlet.build_groom("curls.recipe.toml"))
+        for turn in turns:
+            live.head = turn  # a 4 × 4 matrix
+            live.step()
+            draw(live.positions)
+    """
+
+    def __init__(
+        self,
+        groom: Groom,
+        material: Material | None = None,
+        *,
+        bodies: Sequence[Mesh] | None = None,
+        still: Sequence[Mesh] = (),
+        gravity: Sequence[float] = GRAVITY,
+        wind: Sequence[float] = (0.0, 0.0, 0.0),
+        fps: float = 24.0,
+        contact: float = CONTACT,
+    ) -> None:
+        if not fps > 0.0:
+            raise UserError(f"live: fps is {fps}; must be positive")
+        self.dt = 1.0 / fps
+        self._material, self._contact = material or Material(), contact
+        self._groomed_gravity = self._gravity = _vector(gravity, "gravity")
+        self._wind = _vector(wind, "wind")
+        self._head = self._pose = np.eye(4)
+        self._bodies, self._still = (groom.scalp,) if bodies is None else tuple(bodies), tuple(still)
+        self._grids: list[tuple[_core.DistanceGrid, bool]] = []
+        self._ease = np.zeros(0)
+        self._set_groom(groom)
+
+    @property
+    def head(self) -> Array:
+        """The rigid transform of the head from where it was groomed, at the end of the next step: shape (4, 4), acting
+        on columns [m].
+
+        One that is not finite or not rigid raises UserError, and the head stays where it was.
+        """
+        return self._head.copy()
+
+    @head.setter
+    def head(self, transform: ArrayLike) -> None:
+        self._head = _rigid(transform)
+
+    @property
+    def gravity(self) -> Vector:
+        """Gravity [m/s²]. Under the one that this was made with, hair hangs as it is groomed."""
+        return self._gravity
+
+    @gravity.setter
+    def gravity(self, gravity: Sequence[float]) -> None:
+        self._gravity = _vector(gravity, "gravity")
+
+    @property
+    def wind(self) -> Vector:
+        """Velocity of the air [m/s]."""
+        return self._wind
+
+    @wind.setter
+    def wind(self, wind: Sequence[float]) -> None:
+        self._wind = _vector(wind, "wind")
+
+    @property
+    def contact(self) -> float:
+        """EI that neighbours add to the bend stiffness of each lock [N m²]."""
+        return self._contact
+
+    @contact.setter
+    def contact(self, contact: float) -> None:
+        if not (np.isfinite(contact) and contact >= 0.0):
+            raise UserError(f"live: contact is {contact}; must be at least 0")
+        self._contact = float(contact)
+        self._set_strands()
+
+    @property
+    def material(self) -> Material:
+        """The material of the locks. Another one acts from the next step on; the hair goes on from where it is."""
+        return self._material
+
+    @material.setter
+    def material(self, material: Material) -> None:
+        self._material = material
+        self._set_strands()
+
+    @property
+    def groom(self) -> Groom:
+        """The groom. From another one, hair goes on from where it is towards its new shape; locks that are not in both,
+        by their ids, begin as groomed."""
+        return self._cores.whole
+
+    @groom.setter
+    def groom(self, groom: Groom) -> None:
+        whole, shown, ids = self._cores.whole.locks, self.positions, self._rods.curves.ids
+        rods, velocities = self.rods, self._strands.velocities.reshape(-1, VERTICES, 3).copy()
+        self._set_groom(groom)
+        self._go_on(ids, rods, velocities)
+        self._ease_from(whole.ids, shown, whole.counts)
+
+    @property
+    def rods(self) -> Array:
+        """Where the vertices of the rods are, of the locks that are simulated [m], shape (rods, vertices, 3)."""
+        return self._strands.positions.reshape(-1, VERTICES, 3).copy()
+
+    @property
+    def motions(self) -> Array:
+        """The rigid motions [R t] of the vertices of rods since they were groomed, shape (rods, vertices, 3, 4).
+
+        A point of a lock is at ``(1 - w) M_a(x) + w M_b(x)``, with the motions M of the vertices before and behind it,
+        the weight w of ``places`` and its place x in the groom.
+        """
+        return self._carried.motions(self._strands.positions, self._pose).reshape(-1, VERTICES, 3, 4)
+
+    @property
+    def places(self) -> tuple[NDArray[np.int32], Array]:
+        """Of each point of all locks the vertex of a rod before it, as a row of all vertices, and the weight of the one
+        behind; shapes (n,)."""
+        return self._vertex, self._weight
+
+    @property
+    def positions(self) -> Array:
+        """The points of all locks [m], shape (n, 3)."""
+        points = self._carried.at(self._strands.positions, self._pose)
+        return points + self._ease @ self._pose[:3, :3].T if self._ease.size else points
+
+    def step(self) -> str:
+        """Advances by 1 / fps [s], in which the head goes to ``head``.
+
+        Returns a sentence about what was cut off, empty where nothing was: a head that is thrown farther than 0.3 m or
+        60° carries its hair along rigidly, and locks that are lost begin again as groomed.
+        """
+        note = self._catch_up()
+        start, end = self._pose, self._head
+        held = _moved(self._rods.points, end)
+        report = self._strands.step(
+            held,
+            self.dt,
+            gravity=self._gravity,
+            wind=self._wind,
+            forces=self._support @ end[:3, :3].T,
+            solver=SOLVER,
+            planes=self._planes(start, end),
+        )
+        positions, velocities = self._strands.positions, self._strands.velocities
+        self._grid.share(positions, self._strands.masses, self._held, start, end, self.dt, SHARE, KEEP, velocities)
+        self._pose = end
+        if self._ease.size:
+            self._ease *= np.exp(-self.dt / EASE)
+            if np.abs(self._ease).max() < 1e-6:
+                self._ease = np.zeros(0)
+        lost = report["nan"] > 0.0
+        if lost.any():
+            self._begin_again(lost)
+            note = note or f"{lost.sum()} of {lost.size} locks were lost and begin again as groomed"
+        return note
+
+    def _planes(self, start: Array, end: Array) -> Planes | None:
+        """The planes that keep the rods outside bodies in a step in which the head goes from one pose to another."""
+        if not self._grids:
+            return None
+        positions, planes, still = self._strands.positions, _core.BodyPlanes(len(self._held)), np.eye(4)
+        for grid, moves in self._grids:
+            planes.add(grid, start if moves else still, end if moves else still, positions, self._clearance)
+        near = (planes.gaps < NEAR) & (self._held == 0)
+        return planes.normals, planes.offsets, np.where(near, FIRM / self.dt**2 * self._strands.masses, 0.0)
+
+    def reset(self) -> None:
+        """Puts the hair at rest as it is groomed, on the head where that is."""
+        self._pose = self._head
+        self._strands.place(_moved(self._rods.points, self._pose))
+        self._ease = np.zeros(0)
+
+    def _set_groom(self, groom: Groom) -> None:
+        """Takes over a groom, with its hair at rest where it is groomed on the head."""
+        groom.locks.check("live: locks").check_strands("live: locks")
+        self._cores, self._ease = Cores.of(groom), np.zeros(0)
+        self._rods = Rods.of(self._cores.groom.locks)
+        rods, whole = self._rods.points, groom.locks
+        counts, simulated = whole.counts, self._cores.simulated
+        by_count = {int(count): places(int(count)) for count in np.unique(counts)}
+        first = VERTICES * np.repeat(simulated, counts)
+        self._vertex = (first + np.concatenate([by_count[count][0] for count in counts])).astype(np.int32)
+        self._weight = np.concatenate([by_count[count][1] for count in counts])
+        axes = np.tile([1.0, 0.3, 0.2], (len(self._rods.curves), 1))
+        self._carried = _core.CarriedLocks(
+            np.array(whole.points, np.float64), self._vertex, self._weight, rods, self._rods.curves.offsets, axes
+        )
+        self._grid = _core.VelocityGrid(rods.min(axis=0) - MARGIN, rods.max(axis=0) + MARGIN, CELL)
+        self._set_bodies(rods)
+        self._set_strands(at=_moved(rods, self._pose))
+
+    def _set_bodies(self, rods: Array) -> None:
+        """Samples the distances to bodies around the hair; what is groomed closer than its coil is wide stays so."""
+        low, high = rods.min(axis=0) - MARGIN, rods.max(axis=0) + MARGIN
+        self._clearance = np.repeat(self._rods.radius + CLEARANCE, VERTICES)
+        if not self._grids or (low < self._low).any() or (high > self._high).any():
+            self._low, self._high = low - MARGIN, high + MARGIN
+            self._grids = []
+            for meshes, moves in ((self._bodies, True), (self._still, False)):
+                for mesh in meshes:
+                    solid = _core.Solid(np.ascontiguousarray(mesh.points, np.float64), mesh.triangles)
+                    self._grids.append((_core.DistanceGrid(solid, self._low, self._high, DISTANCES), moves))
+        for grid, _ in self._grids:
+            self._clearance = np.minimum(self._clearance, grid.at(rods)[0])
+
+    def _set_strands(self, at: Array | None = None) -> None:
+        """Makes the rods of the present material; at rest at some positions, or where they are."""
+        locks = self._cores.groom.locks
+        factors: dict[str, Array] = dict(self._cores.material())
+        for name, factor in worn_factors(
+            locks, self._material, factors.get("radius", np.ones(len(locks.points)))
+        ).items():
+            factors[name] = factors.get(name, 1.0) * factor
+        for name, wanted in WANTED.items():
+            if wanted in locks.curve:
+                factors[name] = factors.get(name, 1.0) * np.repeat(locks.curve[wanted], locks.counts)
+        memory: dict[str, Any] = {} if at is not None else self._strands.memory
+        self._strands: Strands = self._rods.strands(Wire.of(locks, self._material, factors, self._contact))
+        if at is None:
+            self._strands.recall(memory)
+        else:
+            self._strands.place(at)
+        self._held = np.ascontiguousarray(self._strands.held, np.uint8)
+        # In the frame of the head: with this load and the gravity in which it was groomed, hair hangs as it is groomed.
+        self._support = -np.outer(self._strands.masses, self._groomed_gravity)
+
+    def _go_on(self, ids: NDArray[np.int64], rods: Array, velocities: Array) -> None:
+        """Puts the rods of locks that were there before where they were; held vertices are with the new groom."""
+        _, old, new = np.intersect1d(ids, self._rods.curves.ids, return_indices=True)
+        at = self._strands.positions.reshape(-1, VERTICES, 3).copy()
+        free = ~np.asarray(self._strands.held).reshape(-1, VERTICES)[0]
+        at[np.ix_(new, np.flatnonzero(free))] = rods[np.ix_(old, np.flatnonzero(free))]
+        self._strands.place(at.reshape(-1, 3))
+        self._strands.velocities.reshape(-1, VERTICES, 3)[new] = velocities[old]
+
+    def _ease_from(self, ids: NDArray[np.int64], shown: Array, counts: NDArray[np.integer]) -> None:
+        """Coils of locks that were there before begin where they were shown, and go over in time."""
+        locks = self._cores.whole.locks
+        starts, row_of = np.concatenate([[0], np.cumsum(counts)]), {int(id): row for row, id in enumerate(ids)}
+        before = self.positions
+        now = before.copy()
+        for row, id in enumerate(locks.ids):
+            old = row_of.get(int(id))
+            if old is None:
+                continue
+            points = shown[starts[old] : starts[old + 1]]
+            begin, end = locks.offsets[row : row + 2]
+            if len(points) != end - begin:
+                u, v = np.linspace(0.0, 1.0, end - begin), np.linspace(0.0, 1.0, len(points))
+                points = np.stack([np.interp(u, v, points[:, k]) for k in range(3)], axis=1)
+            now[begin:end] = points
+        self._ease = (now - before) @ self._pose[:3, :3]
+
+    def _catch_up(self) -> str:
+        """Carries hair rigidly along with a head that is thrown; returns a sentence about that."""
+        move = self._head @ np.linalg.inv(self._pose)
+        centre = _moved(self._rods.points.mean(axis=0, keepdims=True), self._pose)
+        distance = float(np.linalg.norm(_moved(centre, move) - centre))
+        angle = float(np.arccos(np.clip(0.5 * (np.trace(move[:3, :3]) - 1.0), -1.0, 1.0)))
+        if distance <= FARTHEST and angle <= FASTEST:
+            return ""
+        memory = self._strands.memory
+        memory["positions"] = _moved(memory["positions"], move)
+        for name in ("velocities", "directors", "normals"):
+            memory[name] = memory[name] @ move[:3, :3].T
+        memory["velocities"][:] = 0.0
+        self._strands.recall({name: np.ascontiguousarray(values) for name, values in memory.items()})
+        self._pose = self._head
+        return (
+            f"the head was thrown {distance:.2g} m and {np.degrees(angle):.0f}° in a step of {self.dt:.3g} s; its hair "
+            "was carried along"
+        )
+
+    def _begin_again(self, lost: NDArray[np.bool_]) -> None:
+        """Puts some rods at rest as they are groomed."""
+        memory = self._strands.memory
+        self._strands.place(_moved(self._rods.points, self._pose))
+        for name, groomed in self._strands.memory.items():
+            chosen = lost if len(groomed) == len(lost) else np.repeat(lost, VERTICES)
+            memory[name][chosen] = groomed[chosen]
+        self._strands.recall(memory)
+
+
+def _moved(points: Array, transform: Array) -> Array:
+    """Points (n, 3) after a rigid motion."""
+    return points @ transform[:3, :3].T + transform[:3, 3]
+
+
+def _vector(values: Sequence[float], name: str) -> Vector:
+    """Three finite numbers."""
+    vector = np.asarray(values, np.float64)
+    if vector.shape != (3,) or not np.isfinite(vector).all():
+        raise UserError(f"live: {name} is {values}; must be three finite numbers")
+    return tuple(vector.tolist())
+
+
+def _rigid(transform: ArrayLike) -> Array:
+    """A rigid transform, its rotation made exact."""
+    matrix = np.array(transform, np.float64)
+    if matrix.shape != (4, 4) or not np.isfinite(matrix).all():
+        raise UserError("live: head is not a 4 × 4 matrix of finite numbers; the head stays where it is")
+    left, stretch, right = np.linalg.svd(matrix[:3, :3])
+    turn = left @ right
+    if np.abs(stretch - 1.0).max() > NOT_RIGID or np.linalg.det(turn) < 0.0 or not np.allclose(matrix[3], (0, 0, 0, 1)):
+        raise UserError(
+            f"live: head stretches by {np.abs(stretch - 1.0).max():.2g} or mirrors; must be rigid and act on columns, "
+            "the head stays where it is"
+        )
+    matrix[:3, :3] = turn
+    return matrix

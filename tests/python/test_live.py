@@ -1,0 +1,182 @@
+"""Live hair: it hangs as groomed, goes on from where it is, and comes back whatever is done to the head."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from ringlet.live.rods import VERTICES
+from small_example import RECIPE, write_example
+
+import ringlet
+from ringlet import Groom, Live, Material, UserError, _core
+
+Array = NDArray[np.float64]
+
+
+@pytest.fixture(scope="module")
+def groom(tmp_path_factory: pytest.TempPathFactory) -> Groom:
+    folder = write_example(tmp_path_factory.mktemp("live"))
+    return ringlet.build_groom(folder / "small.recipe.toml")
+
+
+def widened(groom: Groom) -> Groom:
+    """The groom with curls twice as wide."""
+    assert groom.scalp_file is not None
+    recipe = groom.scalp_file.parent / "wide.recipe.toml"
+    recipe.write_text(RECIPE.replace("width = 1.0", "width = 2.0"))
+    return ringlet.build_groom(recipe)
+
+
+def turned(degrees: float, shift: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Array:
+    """A turn of the head about the vertical, and a shift [m]."""
+    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    head = np.eye(4)
+    head[:3, :3], head[:3, 3] = [[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]], shift
+    return head
+
+
+def swung(live: Live, steps: int = 6) -> Live:
+    """After some steps of a head that turns."""
+    for k in range(1, steps + 1):
+        live.head = turned(8.0 * k)
+        assert live.step() == ""
+    return live
+
+
+def test_hair_begins_as_groomed_and_hangs_still(groom: Groom) -> None:
+    live = Live(groom)
+    assert live.positions == pytest.approx(np.asarray(groom.locks.points, np.float64), abs=1e-9)
+    for _ in range(240):
+        live.step()
+    assert live.positions == pytest.approx(np.asarray(groom.locks.points, np.float64), abs=1e-4)
+
+
+def test_rods_carry_their_locks_rigidly(groom: Groom) -> None:
+    live, head = Live(groom), turned(40.0, (0.1, 0.2, -0.3))
+    live.head = head
+    live.reset()
+    expected = np.asarray(groom.locks.points, np.float64) @ head[:3, :3].T + head[:3, 3]
+    assert live.positions == pytest.approx(expected, abs=1e-9)
+    assert live.motions == pytest.approx(np.broadcast_to(head[:3], live.motions.shape), abs=1e-9)
+
+
+def test_points_follow_the_motions_of_the_vertices_about_them(groom: Groom) -> None:
+    """As the page carries them."""
+    live = swung(Live(groom))
+    assert live.rods.shape == (len(groom.locks), VERTICES, 3)
+    vertex, weight = live.places
+    motions, points = live.motions.reshape(-1, 3, 4), np.c_[groom.locks.points, np.ones(len(groom.locks.points))]
+    before, behind = (np.einsum("nij,nj->ni", motions[at], points) for at in (vertex, vertex + 1))
+    assert live.positions == pytest.approx((1.0 - weight)[:, None] * before + weight[:, None] * behind, abs=1e-12)
+
+
+def test_hair_lags_and_comes_back(groom: Groom) -> None:
+    live = swung(Live(groom))
+    still = np.asarray(groom.locks.points) @ live.head[:3, :3].T
+    assert np.abs(live.positions - still).max() > 5e-4
+    for _ in range(48):
+        live.step()
+    assert np.abs(live.positions - still).max() < 1e-3
+
+
+def test_another_material_acts_from_the_next_step(groom: Groom) -> None:
+    live, other = swung(Live(groom)), swung(Live(groom))
+    before = live.positions
+    live.material = Material(bend_scale=10.0)
+    assert live.positions == pytest.approx(before, abs=0.0)
+    live.step()
+    other.step()
+    assert np.abs(live.positions - other.positions).max() > 1e-4
+
+
+def test_gravity_and_wind_act(groom: Groom) -> None:
+    for change in ({"gravity": (0.0, 9.81, 0.0)}, {"wind": (5.0, 0.0, 0.0)}):
+        live = Live(groom)
+        for name, value in change.items():
+            setattr(live, name, value)
+        for _ in range(24):
+            live.step()
+        moved = (live.positions - groom.locks.points)[groom.locks.offsets[1:] - 1].mean(axis=0)
+        assert moved @ (0.0, 1.0, 0.0) > 1e-4 or moved @ (1.0, 0.0, 0.0) > 1e-4
+
+
+def test_hair_goes_on_from_where_it_is_to_another_groom(groom: Groom) -> None:
+    live, wider = swung(Live(groom)), widened(groom)
+    before = live.positions
+    live.groom = wider
+    assert live.positions == pytest.approx(before, abs=1e-9)
+    live.step()
+    assert np.abs(live.positions - before).max() < 0.02
+    for _ in range(72):
+        live.step()
+    assert live.positions == pytest.approx(np.asarray(wider.locks.points) @ live.head[:3, :3].T, abs=1e-3)
+
+
+def test_locks_that_are_new_begin_as_groomed(groom: Groom) -> None:
+    live, few = swung(Live(groom)), replace(groom, locks=groom.locks.take(np.array([0, 2, 5])))
+    kept = live.positions.reshape(len(groom.locks), -1, 3)[[0, 2, 5]]
+    live.groom = few
+    assert live.positions.reshape(3, -1, 3) == pytest.approx(kept, abs=1e-9)
+    live.groom = groom
+    assert live.positions.reshape(len(groom.locks), -1, 3)[[0, 2, 5]] == pytest.approx(kept, abs=1e-9)
+    grown = np.asarray(groom.locks.points).reshape(len(groom.locks), -1, 3)[1] @ live.head[:3, :3].T
+    assert live.positions.reshape(len(groom.locks), -1, 3)[1] == pytest.approx(grown, abs=1e-9)
+
+
+@pytest.mark.parametrize("thrown", [turned(0.0, (5.0, 0.0, 2.0)), turned(170.0)])
+def test_a_head_that_is_thrown_carries_its_hair_along(groom: Groom, thrown: Array) -> None:
+    live = swung(Live(groom))
+    live.head = thrown
+    note = live.step()
+    assert "thrown" in note and "\n" not in note
+    for _ in range(24):
+        assert live.step() == ""
+    still = np.asarray(groom.locks.points) @ thrown[:3, :3].T + thrown[:3, 3]
+    assert np.abs(live.positions - still).max() < 2e-3
+
+
+@pytest.mark.parametrize("head", [np.full((4, 4), np.nan), 2.0 * np.eye(4), np.diag([1.0, 1.0, -1.0, 1.0]), np.eye(3)])
+def test_what_is_no_motion_of_a_head_is_refused(groom: Groom, head: Array) -> None:
+    live = swung(Live(groom))
+    before = live.head
+    with pytest.raises(UserError, match=r"^live: head .* stays where it is$"):
+        live.head = head
+    assert (live.head == before).all()
+    live.step()
+    assert np.isfinite(live.positions).all()
+
+
+def test_the_grid_keeps_momentum_and_what_moves_with_the_head() -> None:
+    random = np.random.default_rng(1)
+    places, masses = random.uniform(-0.1, 0.1, (200, 3)), random.uniform(1.0, 2.0, 200)
+    grid = _core.VelocityGrid(np.full(3, -0.2), np.full(3, 0.2), 0.05)
+    velocities, still, free = random.standard_normal((200, 3)), np.eye(4), np.zeros(200, np.uint8)
+    before = masses @ velocities
+    spread = np.linalg.norm(velocities - velocities.mean(axis=0))
+    grid.share(places, masses, free, still, still, 0.04, 0.7, 1.0, velocities)
+    assert masses @ velocities == pytest.approx(before)
+    assert np.linalg.norm(velocities - velocities.mean(axis=0)) < 0.5 * spread
+
+    head = turned(10.0, (0.02, 0.0, 0.01))
+    end = places @ head[:3, :3].T + head[:3, 3]
+    velocities = (end - places) / 0.04
+    expected = velocities.copy()
+    grid.share(end, masses, free, still, head, 0.04, 0.7, 0.9, velocities)
+    assert velocities == pytest.approx(expected, abs=1e-12)
+
+
+def test_distances_of_a_grid_are_those_to_the_mesh(groom: Groom) -> None:
+    scalp = groom.scalp
+    solid = _core.Solid(np.ascontiguousarray(scalp.points, np.float64), scalp.triangles)
+    grid = _core.DistanceGrid(solid, np.full(3, -0.15), np.full(3, 0.15), 0.005)
+    places = np.random.default_rng(2).uniform(-0.14, 0.14, (500, 3))
+    distances, gradients = grid.at(places)
+    assert distances == pytest.approx(solid.above(places)[0], abs=2e-3)
+    h = 1e-6
+    for k in range(3):
+        step = h * np.eye(3)[k]
+        slope = (grid.at(places + step)[0] - grid.at(places - step)[0]) / (2.0 * h)
+        within = np.linalg.norm(gradients, axis=1) > 0.9
+        assert slope[within] == pytest.approx(gradients[within, k], abs=0.12)
+    assert np.isinf(grid.at(np.array([[1.0, 0.0, 0.0]]))[0][0])
