@@ -166,10 +166,8 @@ class Review:
         self.until("ringlet.laidOut")
 
     def locks(self) -> np.ndarray:
-        """Points of the locks where they are drawn, shape (locks, points, 3)."""
-        hair = "ringlet.viewer.hair.a"
-        points = self.get(f"Array.from({hair}.placed)")
-        return np.reshape(points, (self.get(f"{hair}.locks.ids.length"), -1, 3))
+        """Points of the locks where they are drawn [m], shape (points, 3)."""
+        return np.reshape(self.get("Array.from(ringlet.viewer.hair.a.placed)"), (-1, 3))
 
     def picture(self) -> np.ndarray:
         """Pixels of the canvas, shape (height, width, 3)."""

@@ -13,6 +13,7 @@ import pytest
 from numpy.typing import NDArray
 from PIL import Image
 from review import Review
+from test_review_accessibility import AXE, Checked
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SIZE, SAMPLES, PATCH = 160, 32, 8
@@ -188,6 +189,10 @@ def test_a_render_is_shown_in_place_wiped_saved_and_ended_by_a_move(opened: Any,
     picture = review.page.get_by_alt_text("Path-traced picture")
     assert picture.is_visible()
     review.until("ringlet.render.picture.samples == 4", 600.0)
+    if AXE.exists():
+        checked = Checked(review)
+        checked.check("render")
+        assert checked.found == {}
     assert "Rendered, 4 samples" in review.page.locator(".render-state").inner_text()
     line = review.page.get_by_role("slider", name="Wipe between render and live picture")
     part = review.page.locator(".render")

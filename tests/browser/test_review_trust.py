@@ -117,7 +117,7 @@ def test_the_tray_leaves_the_picture_clear_and_its_targets_are_large_enough(open
 
 
 def test_two_looks_are_labelled_wiped_swapped_and_flipped(opened: Any):
-    review: Review = opened(pixels=0.5)
+    review: Review = opened(pixels=(ratio := 0.25))
     page = review.page
     number(review, "curl.width").fill("2")
     number(review, "curl.width").press("Enter")
@@ -129,14 +129,15 @@ def test_two_looks_are_labelled_wiped_swapped_and_flipped(opened: Any):
     assert page.locator(".look-label b").all_inner_texts() == ["now", "as saved"]
     page.get_by_label("Arrangement of the looks").select_option("wipe")
     clear = review.get("ringlet.viewer.clear")
-    wiped, middle = review.picture(), round(0.5 * (clear["x"] + clear["width"] / 2))
+    wiped, middle = review.picture(), round(ratio * (clear["x"] + clear["width"] / 2))
     assert different(wiped[:, :middle], now[:, :middle]) < 0.002 < different(wiped[:, middle:], now[:, middle:])
     page.get_by_label("Place of the wipe").focus()
     for _ in range(26):
         page.keyboard.press("ArrowRight")
     assert different(review.picture(), now) < 0.002  # all that is clear is left of the line
     page.get_by_role("button", name="Swap the two sides").click()
-    assert different(review.picture()[:, :450], now[:, :450]) > 0.005
+    left = slice(round(900 * ratio))
+    assert different(review.picture()[:, left], now[:, left]) > 0.005
     page.get_by_label("Arrangement of the looks").select_option("flip")
     page.get_by_label("Arrangement of the looks").blur()
     assert different(review.picture(), now) < 0.002
