@@ -9,6 +9,7 @@ import { ClearArea } from "./panel/clear_area";
 import { CompareBar } from "./panel/compare";
 import { bindKey, plainKey } from "./panel/keys";
 import { Lens } from "./panel/lens";
+import { LiveHair } from "./panel/live";
 import { LockTool } from "./panel/lock";
 import { Look } from "./panel/look";
 import { Notes } from "./panel/notes";
@@ -36,6 +37,7 @@ export class App {
   readonly model = new Model();
   readonly viewer: Viewer;
   readonly timeline: TimelineBar;
+  readonly live: LiveHair;
   readonly lock: LockTool;
   readonly tools: HandTools;
   readonly look: Look;
@@ -59,6 +61,7 @@ export class App {
 
     // What is in the hand, and how the groom is looked at
     this.lock = new LockTool(model, viewer);
+    const live = (this.live = new LiveHair(model, viewer)); // a frame is shown again once hair is at rest
     this.timeline = new TimelineBar(model, viewer, (frame) => this.status.simulated(frame.statistics));
     const sheets = new Sheets(model);
     this.tools = new HandTools(model, viewer, () => {
@@ -90,7 +93,7 @@ export class App {
 
     // The panels around it
     const lens = new Lens(model, viewer, this.look, () => this.name);
-    viewbar.element.append(lens.button, snapshots.button, this.tray.button);
+    viewbar.element.append(live.button, live.line, lens.button, snapshots.button, this.tray.button);
     const bar = new Bar(model, () => this.setTheme(), people.element, () => this.endComparison()).element;
     const compare = new CompareBar(model, viewer, () => this.endComparison());
     const stack = new Stack(model, () => presets.show(true));
@@ -208,7 +211,7 @@ export class App {
     this.lock.choose(-1);
     this.tools.layDown();
     this.viewer.reset();
-    for (const topic of ["document", "timeline", "guides", "compared", "chosen"] as const) this.model.tell(topic);
+    for (const topic of ["document", "timeline", "guides", "compared", "chosen", "live"] as const) this.model.tell(topic);
   }
 }
 

@@ -50,6 +50,7 @@ export const ICONS = {
   bin: "M4 6h12M8 6V4h4v2M6 6l.7 10h6.6L14 6",
   plus: "M10 4v12M4 10h12",
   camera: "M3 7h3l1.5-2h5L14 7h3v9H3zM10 8.7a2.6 2.6 0 1 0 0 5.2 2.6 2.6 0 0 0 0-5.2z",
+  live: "M5 3c4 3-2 6 0 9s-1 3 0 5M10 3c4 3-2 6 0 9s-1 3 0 5M15 3c4 3-2 6 0 9s-1 3 0 5",
   film: "M3 5h14v10H3zM3 8h2M3 12h2M15 8h2M15 12h2M9 8l3 2-3 2z",
   render: "M4 15.5 10 3l6 12.5zM7.5 9.5l5 6M10 3v12.5",
   turn: "M16 10a6 6 0 1 1-2-4.5M14.5 2.5V6H11",

@@ -10,6 +10,7 @@ import type {
   FromServer,
   Guides,
   Json,
+  Live,
   LockMotion,
   Measured,
   Names,
@@ -61,7 +62,8 @@ type Topic =
   | "references"
   | "views"
   | "cameras"
-  | "clear";
+  | "clear"
+  | "live";
 
 export class Model {
   welcome: Welcome | null = null;
@@ -74,6 +76,8 @@ export class Model {
   measured: Measured | null = null;
   overlay: OverlayName | "" = "";
   timeline: Timeline | null = null;
+  /** Whether hair moves live. */
+  live: Live = { kind: "live", on: false, fps: 0 };
   /** The looks that are compared, by side; that of the open recipe too, once there is another. */
   compared: Partial<Record<Side, Compared>> = {};
   snapshots: Snapshot[] = [];
@@ -143,7 +147,7 @@ export class Model {
       this.tell("pictures");
     });
     this.hear("trouble", () => this.tell("document")); // controls go back to what holds
-    this.keepWhole("painted", "names", "measured", "timeline", "followed");
+    this.keepWhole("painted", "names", "measured", "timeline", "followed", "live");
     this.keepPart("presets", "snapshots", "notes", "references", "views", "cameras");
     this.hear("lock_motion", (message) => {
       this.lockMotion = message;
@@ -162,7 +166,7 @@ export class Model {
   }
 
   /** Keeps messages as they come, under the names of their kinds. */
-  private keepWhole(...kinds: ("painted" | "names" | "measured" | "timeline" | "followed")[]): void {
+  private keepWhole(...kinds: ("painted" | "names" | "measured" | "timeline" | "followed" | "live")[]): void {
     for (const kind of kinds)
       this.hear(kind, (message) => {
         Object.assign(this, { [kind]: message });
@@ -203,6 +207,7 @@ export class Model {
     this.compared = {};
     this.locks = [];
     this.followed = null;
+    this.live = { kind: "live", on: false, fps: 0 };
     this.chosen = { file: "recipe", place: ["curl"] };
   }
 

@@ -1,6 +1,6 @@
 // Made by tools/make_protocol.py from python/ringlet/viewer/protocol; change it there.
 
-export const VERSION = 11;
+export const VERSION = 12;
 export type Json = string | number | boolean | null | Json[] | { [key: string]: Json };
 
 /** A stage of the groom. place: path of its settings in the recipe. */
@@ -467,6 +467,12 @@ export interface Watch {
   against?: number[];
 }
 
+/** Lets the displayed groom move live, or puts it at rest. */
+export interface GoLive {
+  kind: "go_live";
+  on: boolean;
+}
+
 /** Takes a snapshot of the current look. picture: PNG or JPEG in base64. */
 export interface TakeSnapshot {
   kind: "take_snapshot";
@@ -904,6 +910,36 @@ export interface Rendered {
   png: Uint8Array;
 }
 
+/** Whether hair moves live. fps: steps a second; 0 while the first one is being prepared. */
+export interface Live {
+  kind: "live";
+  on: boolean;
+  fps: number;
+}
+
+/** The rods that carry locks in live motion, as groomed. */
+export interface Rods {
+  kind: "rods";
+  key: number;
+  pivot: [number, number, number];
+  points: Float32Array;
+  along: Float32Array;
+  axis: Float32Array;
+  carrier: Uint32Array;
+}
+
+/** A step of live hair: where the vertices of its rods are. */
+export interface LiveStep {
+  kind: "live_step";
+  key: number;
+  step: number;
+  head: number[];
+  trunk: [number, number, number];
+  note: string;
+  points: Float32Array;
+  worn: Float32Array;
+}
+
 export type FromPage =
   | Hello
   | Introduce
@@ -944,6 +980,7 @@ export type FromPage =
   | StopRender
   | AskMotion
   | Watch
+  | GoLive
   | TakeSnapshot
   | EditSnapshot
   | DeleteSnapshot
@@ -991,4 +1028,7 @@ export type FromServer =
   | References
   | Views
   | Cameras
-  | Rendered;
+  | Rendered
+  | Live
+  | Rods
+  | LiveStep;

@@ -158,7 +158,7 @@ test("a link opens the view that it was copied from", async () => {
   choose(control("Overlay"), "pin");
   one.app.viewer.orbit(0.9, 0.2);
   one.app.viewer.move();
-  press("l");
+  press("c");
   await vi.advanceTimersByTimeAsync(10);
   expect(texts(".notice")).toEqual(["The link to this view is copied"]);
   const [link] = written.mock.calls[0];

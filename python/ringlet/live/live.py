@@ -16,7 +16,7 @@ from ringlet import _core
 from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Mesh
-from ringlet.live.rods import VERTICES, Rods, Wire, places
+from ringlet.live.rods import VERTICES, Rods, Wire, places, vertex_places
 from ringlet.shot.material import Material
 from ringlet.shot.solver import Solver
 from ringlet.sim.core import Vector
@@ -38,6 +38,8 @@ DISTANCES = 0.005  # cell of the grids of distances to bodies [m]
 CLEARANCE = 5e-4  # of a coil from them [m]
 FIRM = 1000.0  # stiffness of a body, relative to the inertia of a vertex in a step
 NEAR = 0.1  # from here on a body may be met in a step [m]
+
+ACROSS = 1.0, 0.3, 0.2  # some direction across the roots of rods
 
 EASE = 0.1  # time in which a coil goes over to another groom, to 1/e [s]
 FARTHEST, FASTEST = 0.3, np.pi / 3.0  # of the head in a step [m], [rad]: beyond, hair is carried along rigidly
@@ -164,6 +166,26 @@ class Live:
         return self._strands.positions.reshape(-1, VERTICES, 3).copy()
 
     @property
+    def groomed_rods(self) -> Array:
+        """Where the vertices of the rods are as groomed [m], shape (rods, vertices, 3)."""
+        return self._rods.points.reshape(-1, VERTICES, 3).copy()
+
+    @property
+    def carriers(self) -> NDArray[np.int64]:
+        """The rod that carries each lock, shape (locks,)."""
+        return self._cores.simulated.copy()
+
+    @property
+    def vertex_places(self) -> Array:
+        """Where on a lock the vertices of its rod are, from 0 at the root to 1, shape (vertices,)."""
+        return vertex_places()
+
+    @property
+    def axes(self) -> Array:
+        """A direction across the root of each rod as groomed, where its frames begin, shape (rods, 3)."""
+        return np.tile(ACROSS, (len(self._rods.curves), 1))
+
+    @property
     def motions(self) -> Array:
         """The rigid motions [R t] of the vertices of rods since they were groomed, shape (rods, vertices, 3, 4).
 
@@ -242,9 +264,8 @@ class Live:
         first = VERTICES * np.repeat(simulated, counts)
         self._vertex = (first + np.concatenate([by_count[count][0] for count in counts])).astype(np.int32)
         self._weight = np.concatenate([by_count[count][1] for count in counts])
-        axes = np.tile([1.0, 0.3, 0.2], (len(self._rods.curves), 1))
         self._carried = _core.CarriedLocks(
-            np.array(whole.points, np.float64), self._vertex, self._weight, rods, self._rods.curves.offsets, axes
+            np.array(whole.points, np.float64), self._vertex, self._weight, rods, self._rods.curves.offsets, self.axes
         )
         self._grid = _core.VelocityGrid(rods.min(axis=0) - MARGIN, rods.max(axis=0) + MARGIN, CELL)
         self._set_bodies(rods)

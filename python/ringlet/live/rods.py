@@ -155,13 +155,13 @@ def places(count: int) -> tuple[NDArray[np.int32], Array]:
 
     The weight rises smoothly, with no slope at vertices.
     """
-    at, vertices = np.linspace(0.0, 1.0, count), _vertex_places()
+    at, vertices = np.linspace(0.0, 1.0, count), vertex_places()
     vertex = np.clip(np.searchsorted(vertices, at, side="right") - 1, 0, VERTICES - 2)
     u = (at - vertices[vertex]) / (vertices[vertex + 1] - vertices[vertex])
     return vertex.astype(np.int32), u * u * (3.0 - 2.0 * u)
 
 
-def _vertex_places() -> Array:
+def vertex_places() -> Array:
     """Where on a lock the vertices of its rod are, from 0 at the root to 1."""
     held = HELD_EDGE * np.arange(HELD)
     return np.concatenate([held[:-1], np.linspace(held[-1], 1.0, VERTICES - HELD + 1)]).astype(np.float64)
@@ -173,4 +173,4 @@ def _bases(points: int) -> tuple[Array, Array, Array]:
     at_points = legendre.legvander(np.linspace(-1.0, 1.0, points), degree).astype(np.float64)
     weights = np.where(np.arange(points) == 0, ROOT_WEIGHT, 1.0)
     fit = np.asarray(np.linalg.pinv(at_points * weights[:, None]) * weights, np.float64)
-    return fit, at_points, legendre.legvander(2.0 * _vertex_places() - 1.0, degree).astype(np.float64)
+    return fit, at_points, legendre.legvander(2.0 * vertex_places() - 1.0, degree).astype(np.float64)

@@ -88,6 +88,11 @@ class Publisher:
         for queue in self._queues:
             queue.put(subject, message)
 
+    def send(self, subject: str, message: bytes) -> None:
+        """Queues a message for every page that is connected, without retaining it; on any thread."""
+        for queue in tuple(self._queues):
+            queue.put(subject, message)
+
     def retained(self) -> dict[str, bytes]:
         """The retained messages, by subject."""
         return dict(self._latest)

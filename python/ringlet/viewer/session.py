@@ -27,6 +27,7 @@ from ringlet.viewer.keep.comparer import Comparer
 from ringlet.viewer.keep.reviewing import Reviewing
 from ringlet.viewer.keep.sharing import Sharer
 from ringlet.viewer.pages import Page, Pages
+from ringlet.viewer.play.live_hair import LiveHair, LiveScene
 from ringlet.viewer.play.lock_motion import LockMotions, Question
 from ringlet.viewer.play.playback import Playback
 from ringlet.viewer.project import Project
@@ -71,6 +72,7 @@ class Session:
         self._comparer = Comparer(project, self.publisher, self._call)
         self._rendering, self._sharer = Rendering(project), Sharer(project)
         self._motions = LockMotions()
+        self._live = LiveHair(self.publisher, self._call, trouble, lambda: len(self.pages) > 0)
         self._editing = Editing(self.publisher, self.pages, self.submit)
         self._disk = DiskChanges(
             project, self.publisher, self.problems, self._review, self._call, self._editing.edited, notice, self._record
@@ -128,6 +130,7 @@ class Session:
         self._editing.stop()
         self._grooming.cancel()
         self._comparer.cancel()
+        self._live.stop()
         self.publisher.clear("")
         try:
             self._load(file)
@@ -153,6 +156,7 @@ class Session:
         self._thread.submit(self._finish)
         self._thread.stop(PATIENCE)
         self._playback.stop()
+        self._live.stop(PATIENCE)
         self._grooming.stop(PATIENCE)
         self._comparer.stop(PATIENCE)
         self._sharer.stop(PATIENCE)
@@ -227,6 +231,17 @@ class Session:
             self.publisher.publish("guides", guides)
         if self.files.mode == "shot" and not display.draft:
             self._playback.set_groom(display)
+        self._show_live()
+
+    def _live_scene(self) -> LiveScene:
+        """What would move live now; raises UserError where nothing can."""
+        shot = self.files.shot if self.files.mode == "shot" else None
+        return LiveScene.of(self._viewport.made("live"), shot, self._viewport.bodies)
+
+    def _show_live(self) -> None:
+        """Hair that moves live goes on with what has changed."""
+        if self._live.on:
+            self._live.show(self._live_scene())
 
     # Messages
 
@@ -288,6 +303,11 @@ class Session:
                 self._comparer.compare(message, page.queue)
             case protocol.Play():
                 self._playback.play(message)
+            case protocol.GoLive():
+                if message.on:
+                    self._live.start(self._live_scene())
+                else:
+                    self._live.stop()
             case protocol.Against():
                 self._playback.set_comparison(message)
             case protocol.Restore() if self.recovered:

@@ -51,7 +51,7 @@ export class People {
       iconButton("link", "Copy a link to this view (L)", () => this.look().copyLink()),
     );
     this.questions.append(this.nameless, this.request);
-    bindKey({ section: "Review", keys: "L", does: "copy a link to this view", on: plainKey("l"), run: () => this.look().copyLink() });
+    bindKey({ section: "Review", keys: "C", does: "copy a link to this view", on: plainKey("c"), run: () => this.look().copyLink() });
     bindKey({ section: "Review", keys: "G", does: "follow the page that leads, or stop", on: plainKey("g"), run: () => this.turn() });
     for (const part of [this.faces, this.follow, this.lead]) part.hidden = true;
     model.on("role", () => this.update());

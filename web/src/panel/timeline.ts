@@ -55,6 +55,7 @@ export class TimelineBar {
     model.hear("locks", ({ side }) => this.displaced(side));
     model.on("measured", () => model.overlay && this.overlay());
     model.on("overlay", () => this.overlay());
+    model.on("live", () => (this.displaced("a"), this.draw()));
     this.against.addEventListener("change", () => this.compare(this.against.value));
     this.slider.addEventListener("input", () => this.goTo(Number(this.slider.value)));
     this.run.addEventListener("click", () => this.press());
@@ -315,6 +316,7 @@ export class TimelineBar {
       ["shot", "a"],
       ["against", "b"],
     ] as const) {
+      if (side === "a" && this.model.live.on) continue; // it moves live
       const known = this.known(layer);
       if (!known || known === this.drawn[layer]) continue;
       this.drawn[layer] = known;

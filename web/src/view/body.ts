@@ -4,6 +4,7 @@ import {
   BufferAttribute,
   BufferGeometry,
   GLSL3,
+  type Matrix4,
   Mesh,
   MeshBasicMaterial,
   RawShaderMaterial,
@@ -86,6 +87,15 @@ const LOOKS: Record<string, Record<"roughness" | "specular" | "flatness" | "shee
   matte: { roughness: 0.8, specular: 0.2, flatness: 0, sheen: 0, sheenTint: 0 },
 };
 
+const NECK = 0.03; // half the height over which a neck bends [m]
+
+/** How head and trunk have moved: the motion of the one, the shift of the other, and where the neck joins them [m]. */
+export interface Pose {
+  head: Matrix4;
+  trunk: Vector3;
+  pivot: Vector3;
+}
+
 export class Body {
   readonly mesh: Mesh;
   readonly caster: Mesh;
@@ -95,6 +105,10 @@ export class Body {
   private readonly index: BufferAttribute;
   private readonly tints: BufferAttribute;
   private readonly rest: Float32Array;
+  /** Positions and normals that a pose gives it, by side. */
+  private readonly posed = new Map<Side, [BufferAttribute, BufferAttribute]>();
+  private readonly cloth: boolean;
+  private restNormals: Float32Array | null = null;
 
   constructor(
     message: BodyMessage,
@@ -103,6 +117,7 @@ export class Body {
     private readonly scenes: [Scene, Scene],
   ) {
     this.rest = message.points;
+    this.cloth = message.made_of === "cloth";
     this.solid = message.made_of === "skin" || message.made_of === "cloth";
     this.index = new BufferAttribute(message.triangles, 1);
     const count = message.points.length / 3;
@@ -151,6 +166,37 @@ export class Body {
     if (geometry.getAttribute("position")?.array === points) return;
     geometry.setAttribute("position", new BufferAttribute(points, 3));
     geometry.computeVertexNormals();
+  }
+
+  /** Moves it on one side from where it rests, by a pose of the head: its neck bends, and cloth goes with the trunk. */
+  pose(side: Side, { head, trunk, pivot }: Pose): void {
+    const geometry = this.geometry(side);
+    const { rest, normals, cloth } = this;
+    const [position, normal] = this.posed.get(side) ?? [new BufferAttribute(rest.slice(), 3), new BufferAttribute(normals.slice(), 3)];
+    this.posed.set(side, [position, normal]);
+    const [place, moved] = [new Vector3(), new Vector3()];
+    for (let i = 0; i < rest.length; i += 3) {
+      const t = cloth ? 0 : Math.min(1, Math.max(0, 0.5 + (rest[i + 1] - pivot.y) / (2 * NECK)));
+      const share = t * t * (3 - 2 * t);
+      place.fromArray(rest, i);
+      moved.copy(place).applyMatrix4(head);
+      place.add(trunk).lerp(moved, share).toArray(position.array, i);
+      place.fromArray(normals, i);
+      moved.copy(place).transformDirection(head);
+      place.lerp(moved, share).toArray(normal.array, i);
+    }
+    position.needsUpdate = normal.needsUpdate = true;
+    geometry.setAttribute("position", position).setAttribute("normal", normal);
+  }
+
+  /** Normals at rest, three numbers a point. */
+  private get normals(): Float32Array {
+    if (!this.restNormals) {
+      const geometry = new BufferGeometry().setIndex(this.index).setAttribute("position", new BufferAttribute(this.rest, 3));
+      geometry.computeVertexNormals();
+      this.restNormals = geometry.getAttribute("normal").array as Float32Array;
+    }
+    return this.restNormals;
   }
 
   get triangles(): number {

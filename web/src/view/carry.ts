@@ -14,6 +14,7 @@ import {
   WebGLRenderTarget,
 } from "three";
 import type { Hairs } from "../protocol";
+import { MOST_VERTICES } from "./rods";
 import { LOOKUP } from "./shaders";
 import type { Slices, Work } from "./slices";
 import type { LockTable } from "./table";
@@ -27,6 +28,7 @@ void main() { gl_Position = vec4(position.xy, 0.0, 1.0); }
 const FRAGMENT = /* glsl */ `
 precision highp float;
 precision highp int;
+#define MOST_VERTICES ${MOST_VERTICES}
 ${LOOKUP}
 uniform highp sampler2D lockPoint, lockA, lockB, lockPlace;
 uniform highp sampler2D hairPlace;  // lock, tip, offset
@@ -42,6 +44,10 @@ uniform bool curled;
 uniform highp sampler2D ramps;      // profile, hold, thinning, blend; pace: two texels a point of each groom
 uniform highp sampler2D left;       // the part of its way from the lock that each point keeps, as many texels as the result
 uniform int hairs, points, knots;
+uniform bool live;                    // whether rods carry the hair
+uniform highp sampler2D rodMotion;    // motions of their vertices: three texels each
+uniform float along[MOST_VERTICES];   // places of the vertices of a rod on a lock
+uniform int vertices;
 out vec4 result;
 
 vec2 knot(highp sampler2D values, int hair, int i) {
@@ -82,6 +88,18 @@ vec3 onPolyline(vec4 lock, float at) {
   return mix(lookup(lockPoint, row).xyz, lookup(lockPoint, row + 1).xyz, at - float(j));
 }
 
+// A place of hair at a fraction of a lock, where the rod has carried it: as in src/ringlet/live/carried_locks.h.
+vec3 carried(vec4 lock, float at, vec3 place) {
+  if (!live) return place;
+  int v = 0;
+  while (v < vertices - 2 && at >= along[v + 1]) v++;
+  float t = clamp((at - along[v]) / (along[v + 1] - along[v]), 0.0, 1.0), w = t * t * (3.0 - 2.0 * t);
+  int row = 3 * (int(lock.w) + v);
+  vec3 moved;
+  for (int c = 0; c < 3; c++) moved[c] = dot(mix(lookup(rodMotion, row + c), lookup(rodMotion, row + 3 + c), w), vec4(place, 1.0));
+  return moved;
+}
+
 void main() {
   int index = int(gl_FragCoord.x) + 2048 * int(gl_FragCoord.y);
   int hair = index / points, k = index - hair * points;
@@ -116,15 +134,16 @@ void main() {
 
   float at = lock.y * (joins.x + (sits.y - joins.x) * mix(u, lookup(ramps, 2 * station + 1).x, joins.y));
   if (joins.x > 0.0) root.xyz += lookup(lockPoint, int(lock.x)).xyz - onLock(lock, joins.x * lock.y, vec2(0.0), vec4(0.0));
-  vec3 place = onLock(lock, at, across, turned) + ramp.y * root.xyz;
+  float part = at / lock.y;
+  vec3 place = carried(lock, part, onLock(lock, at, across, turned) + ramp.y * root.xyz);
   if (mixed.z > 0.0) { // drawn to a neighbouring lock: the same hair about that one
     vec4 other = lookup(lockPlace, int(mixed.y));
     vec3 there = root.xyz + lookup(lockPoint, int(lock.x)).xyz - lookup(lockPoint, int(other.x)).xyz;
-    vec3 theirs = onLock(other, at * other.y / lock.y, across, turned) + ramp.y * there;
+    vec3 theirs = carried(other, part, onLock(other, part * other.y, across, turned) + ramp.y * there);
     place += mixed.z * ramp.w * (theirs - place);
   }
-  float part = texelFetch(left, ivec2(gl_FragCoord.xy), 0).r;
-  if (part < 1.0) place = mix(onPolyline(lock, at), place, part);
+  float keeps = texelFetch(left, ivec2(gl_FragCoord.xy), 0).r;
+  if (keeps < 1.0) place = mix(carried(lock, part, onPolyline(lock, at)), place, keeps);
   result = vec4(place, root.w * ramp.z);
 }
 `;
@@ -137,6 +156,7 @@ export class Carry {
   private readonly material: RawShaderMaterial;
   private readonly numbers: Record<string, Numbers> = {};
   private readonly left: Shares;
+  private roots: Float32Array | null = null;
   /** Rows of the target that are up to date. */
   private carried = 0;
 
@@ -154,6 +174,9 @@ export class Carry {
         knots: { value: hairs.knots },
         left: { value: this.left.texture },
         curled: { value: hairs.window.length > 0 },
+        live: { value: false },
+        along: { value: new Float32Array(MOST_VERTICES) },
+        vertices: { value: 2 },
       },
     });
     this.scene.add(new Mesh(new PlaneGeometry(2, 2), this.material));
@@ -174,6 +197,7 @@ export class Carry {
       ramps.set([hairs.profile[k], hairs.hold[k], hairs.thinning[k], hairs.blend[k], hairs.pace[k]], 8 * k);
     this.put("ramps", ramps);
     this.setRoots(hairs.root);
+    this.put("rodMotion", new Float32Array(4));
   }
 
   /** Mean diameter of the hairs at their thickest [m]. */
@@ -193,6 +217,8 @@ export class Carry {
 
   /** Where roots are, from those of their locks: they turn with the head. */
   setRoots(root: Float32Array): void {
+    if (root === this.roots) return;
+    this.roots = root;
     const { count, width, join, flat, group } = this.hairs;
     const rows = new Float32Array(8 * count);
     for (let i = 0; i < count; i++)
@@ -227,6 +253,16 @@ export class Carry {
   /** Where the rows of each lock are, and how it is marked. */
   setPlaces(table: LockTable): void {
     this.put("lockPlace", table.places);
+  }
+
+  /** Where rods carry the hair from there: the places of their vertices, and the motions of these; none: it stays. */
+  setMotions(along: Float32Array, motions: Float32Array | null): void {
+    const { uniforms } = this.material;
+    uniforms["live"].value = motions !== null;
+    if (!motions) return;
+    (uniforms["along"].value as Float32Array).set(along);
+    uniforms["vertices"].value = along.length;
+    this.put("rodMotion", motions);
   }
 
   /** All hairs are to be carried again. */

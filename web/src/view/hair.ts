@@ -4,6 +4,7 @@ import {
   Box3,
   GLSL3,
   InstancedBufferGeometry,
+  type Matrix4,
   Mesh,
   PlaneGeometry,
   RawShaderMaterial,
@@ -27,6 +28,7 @@ import {
   SEEN_VERTEX,
 } from "./hair_shader";
 import type { Lights } from "./lights";
+import type { Rods } from "./rods";
 import { complete, Slices, type Work } from "./slices";
 import { type LockTable, lockTable } from "./table";
 import { Colours } from "./textures";
@@ -51,11 +53,17 @@ export class Hair {
   readonly scene = new Scene();
   readonly firstScene = new Scene();
   readonly box = new Box3();
+  /** That of the hair where it is placed. */
+  private readonly placedBox = new Box3();
   readonly volume = new LightVolume();
   locks: Locks | null = null;
   /** Points of the locks where they are now, at rest or in a frame. */
   placed: Float32Array | null = null;
   table: LockTable | null = null;
+  /** The rods that carry the hair in live motion, where their vertices are, and the motion of the head. */
+  private carrying: { rods: Rods; points: Float32Array; head: Matrix4 } | null = null;
+  /** Motions of the vertices of rods that carry the hair; null: none do. */
+  motions: Float32Array | null = null;
   private carry: Carry | null = null;
   private geometry = new InstancedBufferGeometry();
   private readonly shared: Uniforms;
@@ -144,7 +152,7 @@ export class Hair {
   /** Removes the hair. */
   clear(): void {
     this.carry?.dispose();
-    this.carry = this.locks = this.table = null;
+    this.carry = this.locks = this.table = this.carrying = null;
     this.box.makeEmpty();
   }
 
@@ -172,11 +180,39 @@ export class Hair {
     this.table = lockTable(points, this.locks.offsets, axis, this.carry?.hairs.window ?? new Int32Array());
     this.setMarks(this.locks.marked);
     this.spread();
-    if (root?.length) this.carry?.setRoots(root);
+    this.carry?.setRoots(root?.length ? root : this.carry.hairs.root);
     this.carry?.setDrawn(drawn ?? new Uint32Array(), left ?? new Uint8Array());
-    measure(this.box, points);
+    measure(this.placedBox, points);
     this.carry?.setLocks(this.table);
+    this.follow();
     this.moved();
+  }
+
+  /** Lets rods carry the hair from where it is placed; nothing: it is where it is placed. */
+  carryBy(rods: Rods | null, points: Float32Array = new Float32Array(), head?: Matrix4): void {
+    const fits = rods !== null && head !== undefined && rods.message.carrier.length === this.locks?.ids.length;
+    if (!fits && !this.carrying) return;
+    this.carrying = fits ? { rods, points, head } : null;
+    this.follow();
+    this.moved();
+  }
+
+  /** The hair follows the rods that carry it. */
+  private follow(): void {
+    const { carrying, carry, table, locks } = this;
+    this.box.copy(this.placedBox);
+    if (!carry || !table || !locks) return;
+    if (!carrying || carrying.rods.message.carrier.length !== locks.ids.length) {
+      this.motions = null;
+      carry.setMotions(new Float32Array(), null);
+      return;
+    }
+    const { rods, points, head } = carrying;
+    this.motions = rods.motions(points, head);
+    rods.first.forEach((vertex, lock) => (table.places[4 * lock + 3] = vertex));
+    carry.setPlaces(table);
+    carry.setMotions(rods.message.along, this.motions);
+    this.box.copy(rods.box(points, this.placedBox));
   }
 
   /** Sets which locks are marked: 1 isolated, 2 chosen. */

@@ -2,7 +2,7 @@
 
 import { type BufferGeometry, Scene, Vector3 } from "three";
 import type { Body as BodyMessage, Colors, Hairs, Locks, Rig } from "../protocol";
-import { Body } from "./body";
+import { Body, type Pose } from "./body";
 import { GuideLines } from "./guides";
 import { type Colour, Hair } from "./hair";
 import { Lights } from "./lights";
@@ -54,6 +54,19 @@ export class Stage {
     for (const [, body] of [...this.bodies].sort(([i], [j]) => i - j)) {
       body.place(side, points?.length ? points.slice(3 * at, 3 * (at + body.points)) : undefined);
       at += body.points;
+    }
+    this.hair[side].relight();
+    this.changed();
+  }
+
+  /** Moves all bodies on one side by a pose of the head, but for the last ones, whose points what the hair wears has. */
+  pose(side: Side, pose: Pose, worn: Float32Array): void {
+    const bodies = [...this.bodies].sort(([i], [j]) => j - i).map(([, body]) => body);
+    let end = worn.length;
+    for (const body of bodies) {
+      if (end) body.place(side, worn.slice(end - 3 * body.points, end));
+      else body.pose(side, pose);
+      end = Math.max(0, end - 3 * body.points);
     }
     this.hair[side].relight();
     this.changed();

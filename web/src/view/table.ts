@@ -6,7 +6,7 @@ export interface LockTable {
   point: Float32Array; // four numbers a row
   a: Float32Array;
   b: Float32Array;
-  places: Float32Array; // of each lock: its first row, the number of its last point, 0, 0
+  places: Float32Array; // of each lock: its first row, the number of its last point, how it is marked, the first vertex of its rod
   u: Float32Array; // frame of the centre line of each lock's coil; the fourth number is the lock's place in it
   v: Float32Array;
 }
@@ -79,7 +79,7 @@ function fill(
 }
 
 /** Rotation-minimising frames of a polyline into the rows of a table from `row` on. */
-function frames(
+export function frames(
   points: Float32Array | Float64Array,
   from: number,
   n: number,

@@ -4,11 +4,13 @@ import type { BufferGeometry, PerspectiveCamera, Vector3, WebGLRenderer } from "
 import type { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { h } from "../dom";
 import type { Locks, Shared } from "../protocol";
+import type { Pose } from "./body";
 import type { Box, Size } from "./box";
 import { contextOf, drawsInSoftware, NO_PICTURE, writeNoPicture } from "./context";
 import type { Film } from "./film";
 import type { Hair } from "./hair";
 import type { Looks, Side } from "./looks";
+import type { Rods } from "./rods";
 import { OrbitCamera } from "./orbit_camera";
 import { ALL_AT_ONCE, Clock, Pace, type Portion } from "./pace";
 import { Painter } from "./painter";
@@ -116,6 +118,22 @@ export class Viewer {
     this.stage.placeBodies(side, points);
   }
 
+  /** Rods carry the open look, with bodies in a pose of the head; what the hair wears has its own points. */
+  carry(rods: Rods, points: Float32Array, pose: Pose, worn: Float32Array): void {
+    this.hair.a.carryBy(rods, points, pose.head);
+    this.stage.pose("a", pose, worn);
+    this.moves();
+  }
+
+  /** Puts hair and bodies of the open look where they are at rest. */
+  putAtRest(): void {
+    const { a } = this.hair;
+    a.carryBy(null);
+    if (a.locks && a.placed !== a.locks.points) a.place(a.locks);
+    this.placeBodies("a");
+    this.moves();
+  }
+
   /** Shows the hair, or leaves it out so that its guides are seen. */
   showHair(on: boolean): void {
     this.stage.showHair(on);
@@ -205,10 +223,15 @@ export class Viewer {
     this.view.framed = null;
   }
 
-  /** Something moves: speed counts more than detail for a moment. */
+  /** The camera moves: speed counts more than detail for a moment. */
   move(): void {
     this.stay();
     this.onLook();
+    this.moves();
+  }
+
+  /** Something in the picture moves. */
+  private moves(): void {
     this.moved = performance.now();
     this.invalidate();
   }

@@ -54,6 +54,7 @@ from ringlet.viewer.protocol.groom import (
     Numbers,
 )
 from ringlet.viewer.protocol.lights import Lamp, Rig
+from ringlet.viewer.protocol.live import GoLive, Live, LiveStep, Rods
 from ringlet.viewer.protocol.message import (
     VERSION,
     Arranged,
@@ -163,6 +164,9 @@ FROM_SERVER: tuple[type[Message], ...] = (
     Views,
     Cameras,
     Rendered,
+    Live,
+    Rods,
+    LiveStep,
 )
 
 __all__ = [
@@ -200,6 +204,7 @@ __all__ = [
     "Followed",
     "Frame",
     "FromPage",
+    "GoLive",
     "Guides",
     "Hairs",
     "Hand",
@@ -213,6 +218,8 @@ __all__ = [
     "Lamp",
     "Lead",
     "ListPresets",
+    "Live",
+    "LiveStep",
     "LoadSnapshot",
     "LockMotion",
     "Locks",
@@ -251,6 +258,7 @@ __all__ = [
     "Restore",
     "ReviewMessage",
     "Rig",
+    "Rods",
     "Role",
     "Save",
     "Saved",

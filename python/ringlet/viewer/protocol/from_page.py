@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, TypeAdapter
 
 from ringlet.data import limits
+from ringlet.viewer.protocol.live import GoLive
 from ringlet.viewer.protocol.message import (
     Coordinate,
     File,
@@ -352,6 +353,7 @@ FromPage = Annotated[
     | StopRender
     | AskMotion
     | Watch
+    | GoLive
     | ReviewMessage,
     Field(discriminator="kind"),
 ]

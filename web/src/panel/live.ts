@@ -1,0 +1,91 @@
+// Live hair: the switch, and what it shows: steps as they come, and how many of them.
+
+import "./live.css";
+import { h, iconButton } from "../dom";
+import type { Model } from "../model";
+import type { LiveStep } from "../protocol";
+import { headOf, Rods } from "../view/rods";
+import { Vector3 } from "three";
+import type { Viewer } from "../view/viewer";
+import { bindKey, plainKey } from "./keys";
+
+const CAUTION = "Live: locks may pass through one another";
+
+export class LiveHair {
+  readonly button = iconButton("live", "Live hair (L): it moves with the head", () => this.toggle());
+  readonly line = h("div", { class: "live-line", role: "note", hidden: true });
+  private readonly rate = h("output", { class: "rate", "aria-label": "Live steps a second" });
+  private readonly cut = h("span", { class: "cut-off", role: "status" });
+  private rods: Rods | null = null;
+  private step: LiveStep | null = null;
+  /** When steps were seen in the last second [ms]. */
+  private seen: number[] = [];
+  private waiting = false;
+
+  constructor(
+    private readonly model: Model,
+    private readonly viewer: Viewer,
+  ) {
+    this.button.setAttribute("aria-pressed", "false");
+    this.line.append(CAUTION, this.rate, this.cut);
+    bindKey({ section: "View", keys: "L", does: "let hair move live, or put it at rest", on: plainKey("l"), run: () => this.toggle() });
+    model.on("live", () => this.turned());
+    model.on("role", () => this.button.toggleAttribute("disabled", !model.role.leads));
+    model.hear("rods", (message) => {
+      this.rods = new Rods(message);
+      this.step = null;
+    });
+    model.hear("live_step", (message) => this.take(message));
+    for (const kind of ["locks", "hairs", "body"] as const)
+      model.hear(kind, () => this.step && this.show()); // they came at rest
+  }
+
+  private toggle(): void {
+    if (this.model.role.leads) this.model.say({ kind: "go_live", on: !this.model.live.on });
+  }
+
+  /** The server has turned it on or off. */
+  private turned(): void {
+    const { live } = this.model;
+    this.button.setAttribute("aria-pressed", String(live.on));
+    this.line.toggleAttribute("hidden", !live.on);
+    this.seen = [];
+    this.rate.textContent = live.fps ? "" : "is being prepared";
+    this.cut.textContent = "";
+    if (!live.on) this.rods = this.step = null;
+    if (!this.step) this.viewer.putAtRest(); // a frame of a shot may be seen
+  }
+
+  /** A step has come; it is shown with the next picture, where a later one does not replace it. */
+  private take(step: LiveStep): void {
+    if (!this.model.live.on || step.key !== this.rods?.message.key) return;
+    this.step = step;
+    if (step.note) this.cut.textContent = step.note;
+    if (this.waiting) return;
+    this.waiting = true;
+    requestAnimationFrame(() => {
+      this.waiting = false;
+      if (!this.step) return;
+      this.show();
+      this.count();
+    });
+  }
+
+  private show(): void {
+    const { rods, step, viewer } = this;
+    if (!rods || !step) return;
+    const { trunk, points, worn } = step;
+    viewer.carry(rods, points, { head: headOf(step), trunk: new Vector3(...trunk), pivot: new Vector3(...rods.message.pivot) }, worn);
+  }
+
+  /** Says how many steps of a second are seen. */
+  private count(): void {
+    const now = performance.now();
+    this.seen = [...this.seen.filter((at) => now - at < 1000), now];
+    const fps = Math.round(this.model.live.fps);
+    const long = now - this.seen[0] > 900;
+    const seen = Math.min(this.seen.length, fps);
+    if (long) this.rate.textContent = seen < fps - 1 ? `${seen} of ${fps} steps a second` : `${fps} steps a second`;
+    this.rate.classList.toggle("behind", long && seen < fps - 1);
+  }
+}

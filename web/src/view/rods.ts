@@ -1,0 +1,92 @@
+// How rods carry hair in live motion: the rigid motions of their vertices. The same as in src/ringlet/live/carried_locks.cpp.
+
+import { Box3, Matrix4, Vector3 } from "three";
+import type { LiveStep, Rods as RodsMessage } from "../protocol";
+import { frames } from "./table";
+
+export const MOST_VERTICES = 16; // of a rod
+
+/** The rods of a groom. */
+export class Rods {
+  /** Vertices of each. */
+  readonly vertices: number;
+  private readonly groomed: Float32Array;
+  private readonly axis: Float32Array;
+  /** What hair reaches beyond its rods [m]. */
+  private reach = 0;
+
+  constructor(readonly message: RodsMessage) {
+    this.vertices = message.along.length;
+    this.groomed = this.framesOf(message.points, message.axis);
+    this.axis = new Float32Array(message.axis.length);
+  }
+
+  /** The first vertex of the rod of each lock. */
+  get first(): number[] {
+    return Array.from(this.message.carrier, (rod) => this.vertices * rod);
+  }
+
+  /** Motions [R t] of all vertices since they were groomed: twelve numbers each, rows of four. */
+  motions(points: Float32Array, head: Matrix4): Float32Array {
+    const { axis, groomed, message } = this;
+    const across = new Vector3();
+    const turn = head.clone().setPosition(0, 0, 0);
+    for (let i = 0; i < axis.length; i += 3) across.fromArray(message.axis, i).applyMatrix4(turn).toArray(axis, i);
+    const now = this.framesOf(points, axis);
+    const motions = new Float32Array(4 * points.length);
+    for (let v = 0; 3 * v < points.length; v++) {
+      for (let row = 0; row < 3; row++) {
+        const at = 12 * v + 4 * row;
+        let shift = points[3 * v + row];
+        for (let c = 0; c < 3; c++) {
+          let entry = 0;
+          for (let k = 0; k < 9; k += 3) entry += now[9 * v + k + row] * groomed[9 * v + k + c];
+          motions[at + c] = entry;
+          shift -= entry * message.points[3 * v + c];
+        }
+        motions[at + 3] = shift;
+      }
+    }
+    return motions;
+  }
+
+  /** The box of hair whose rods have these vertices, of one that fills another box as groomed. */
+  box(points: Float32Array, rest: Box3): Box3 {
+    const groomed = boxOf(this.message.points);
+    this.reach ||= Math.max(...rest.max.clone().sub(groomed.max).toArray(), ...groomed.min.sub(rest.min).toArray(), 0);
+    return boxOf(points).expandByScalar(this.reach);
+  }
+
+  /** Frames along all rods: three axes a vertex, nine numbers. */
+  private framesOf(points: Float32Array, axis: Float32Array): Float32Array {
+    const { vertices } = this;
+    const count = points.length / 3;
+    const [a, b] = [new Float32Array(4 * count), new Float32Array(4 * count)];
+    const tangents = new Float64Array(3 * vertices);
+    const all = new Float32Array(9 * count);
+    for (let rod = 0; rod * vertices < count; rod++) {
+      const from = rod * vertices;
+      frames(points, from, vertices, rod, axis, tangents, a, b, from);
+      for (let i = 0; i < vertices; i++)
+        for (let c = 0; c < 3; c++) {
+          const at = 9 * (from + i) + c;
+          all[at] = a[4 * (from + i) + c];
+          all[at + 3] = b[4 * (from + i) + c];
+          all[at + 6] = tangents[3 * i + c];
+        }
+    }
+    return all;
+  }
+}
+
+/** The motion of the head in a step. */
+export function headOf({ head }: LiveStep): Matrix4 {
+  return new Matrix4().set(...([...head, 0, 0, 0, 1] as Parameters<Matrix4["set"]>));
+}
+
+function boxOf(points: Float32Array): Box3 {
+  const box = new Box3();
+  const place = new Vector3();
+  for (let i = 0; i < points.length; i += 3) box.expandByPoint(place.fromArray(points, i));
+  return box;
+}

@@ -1,0 +1,138 @@
+// Live hair: its switch, the rods that carry it, and what it leaves when it is off.
+
+import { expect, test, vi } from "vitest";
+import { Matrix4 } from "three";
+import type { LiveStep, Rods as RodsMessage } from "../src/protocol";
+import { Rods } from "../src/view/rods";
+import { control, find, press } from "./controls";
+import { open, type Page } from "./page";
+
+const VERTICES = 4;
+const TURN = new Matrix4().makeRotationY(0.4).setPosition(0.01, 0.02, 0.03);
+
+/** Bent rods, one for each lock of the page. */
+function rodsOf(count: number, key = 1): RodsMessage {
+  const points = Array.from({ length: count * VERTICES }, (_, i) => [0.02 * Math.sin(i), 0.1 - 0.02 * (i % VERTICES), 0.01 * Math.floor(i / VERTICES)]);
+  return {
+    ...{ kind: "rods", key, pivot: [0, -1, 0], along: Float32Array.from([0, 0.1, 0.5, 1]) },
+    ...{ points: Float32Array.from(points.flat()), carrier: Uint32Array.from({ length: count }, (_, k) => k) },
+    axis: Float32Array.from(Array.from({ length: count }, () => [1, 0.3, 0.2]).flat()),
+  };
+}
+
+/** Points after a motion. */
+function moved(points: Float32Array, motion: Matrix4): Float32Array {
+  const { elements: m } = motion;
+  return points.map((_, i) => {
+    const [row, at] = [i % 3, i - (i % 3)];
+    return m[row] * points[at] + m[4 + row] * points[at + 1] + m[8 + row] * points[at + 2] + m[12 + row];
+  });
+}
+
+/** A step in which everything has made a motion with the head. */
+function stepOf(rods: RodsMessage, motion: Matrix4, more: Partial<LiveStep> = {}): LiveStep {
+  const head = motion.clone().transpose().elements.slice(0, 12);
+  return { kind: "live_step", key: rods.key, step: 0, head, trunk: [0, 0, 0], note: "", points: moved(rods.points, motion), worn: new Float32Array(), ...more };
+}
+
+const lives = (page: Page, on: boolean, fps = 24) => page.hear({ kind: "live", on, fps });
+const headBody = (page: Page) => page.app.viewer.stage.bodies.get(0)!.surface("a");
+
+/** The small example in live motion, its hair one step on. */
+async function moving(): Promise<[Page, RodsMessage]> {
+  const page = await open();
+  lives(page, true);
+  const rods = rodsOf(page.app.viewer.hair.a.locks!.ids.length);
+  page.hear(rods);
+  page.hear(stepOf(rods, TURN));
+  vi.advanceTimersByTime(50);
+  return [page, rods];
+}
+
+test("the motions of vertices are those of rods that move rigidly", () => {
+  const message = rodsOf(3);
+  const motions = new Rods(message).motions(moved(message.points, TURN), TURN);
+  const expected = TURN.clone().transpose().elements.slice(0, 12);
+  for (let v = 0; v < 3 * VERTICES; v++)
+    expected.forEach((value, k) => expect(motions[12 * v + k]).toBeCloseTo(value, 5));
+});
+
+test("the key L asks for live hair, and a line says what it is", async () => {
+  const page = await open();
+  press("l", {}, page.app.viewer.canvas);
+  expect(page.last("go_live")).toEqual({ kind: "go_live", on: true });
+  expect(find(".live-line").hidden).toBe(true);
+  lives(page, true, 0);
+  expect(find(".live-line").textContent).toMatch(/may pass through one another.*is being prepared/);
+  expect(control("Live hair").getAttribute("aria-pressed")).toBe("true");
+  control("Live hair").click();
+  expect(page.last("go_live").on).toBe(false);
+  page.role({ leads: false });
+  expect(control<HTMLButtonElement>("Live hair").disabled).toBe(true);
+});
+
+test("hair and head follow a step, and are exactly as they were when it is off", async () => {
+  const still = await open();
+  const { hair } = still.app.viewer;
+  const before = { box: hair.a.box.clone(), points: hair.a.placed!.slice(), head: headBody(still).points.slice() };
+  const [page] = await moving();
+  const { a } = page.app.viewer.hair;
+  expect(a.motions!.length).toBe(12 * VERTICES * a.locks!.ids.length);
+  const expected = moved(before.head, TURN);
+  headBody(page).points.forEach((value, i) => expect(value).toBeCloseTo(expected[i], 5));
+  expect(a.box.equals(before.box)).toBe(false);
+  lives(page, false, 0);
+  expect(a.motions).toBe(null);
+  expect(a.placed).toEqual(before.points);
+  expect(headBody(page).points).toEqual(before.head);
+  expect(a.box.equals(before.box)).toBe(true);
+});
+
+test("a step of other rods, or after the end, moves nothing", async () => {
+  const [page, rods] = await moving();
+  const { a } = page.app.viewer.hair;
+  const before = a.motions;
+  page.hear(stepOf({ ...rods, key: 7 }, new Matrix4()));
+  vi.advanceTimersByTime(50);
+  expect(a.motions).toBe(before);
+  lives(page, false, 0);
+  page.hear(stepOf(rods, TURN));
+  vi.advanceTimersByTime(50);
+  expect(a.motions).toBe(null);
+});
+
+test("a groom that comes meanwhile is carried on", async () => {
+  const [page] = await moving();
+  const { a } = page.app.viewer.hair;
+  page.hear({ ...page.first("locks"), draft: true });
+  expect(a.motions).not.toBe(null);
+  const expected = moved(page.first("body").points, TURN);
+  headBody(page).points.forEach((value, i) => expect(value).toBeCloseTo(expected[i], 5));
+});
+
+test("what is cut off and steps that are left out are said", async () => {
+  const [page, rods] = await moving();
+  for (let k = 0; k < 15; k++) {
+    page.hear(stepOf(rods, TURN, { step: 2 * k, note: k === 3 ? "the head was thrown" : "" }));
+    vi.advanceTimersByTime(1000 / 12);
+  }
+  expect(find(".live-line").textContent).toContain("the head was thrown");
+  expect(find(".live-line .rate").textContent).toMatch(/1[123] of 24 steps a second/);
+});
+
+test("the hair of a shot in a frame is at rest before it moves, and the frame comes back", async () => {
+  const page = await open("small.shot");
+  const { a } = page.app.viewer.hair;
+  const rest = a.placed!;
+  const none = { root: new Float32Array(), drawn: new Uint32Array(), left: new Uint8Array(), bodies: new Float32Array() };
+  const values = { stretch: new Uint8Array(), contact: new Uint8Array(), depth: new Uint8Array(), curl: new Uint8Array() };
+  const timeline = page.model.timeline!;
+  page.hear({ ...timeline, state: "done", key: 2, frames: Float64Array.from([1]), runs: new Int32Array(1), stale: new Uint8Array(1), swings: new Float32Array(3) });
+  page.hear({ kind: "frame", layer: "shot", frame: 1, statistics: {}, points: rest.map((x) => x + 0.01), axis: a.locks!.axis, ...none, ...values });
+  const framed = a.placed;
+  expect(framed).not.toEqual(rest);
+  lives(page, true, 0);
+  expect(a.placed).toEqual(rest);
+  lives(page, false, 0);
+  expect(a.placed).toEqual(framed);
+});
