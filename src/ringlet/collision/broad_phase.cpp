@@ -1,10 +1,10 @@
 #include "ringlet/collision/broad_phase.h"
 
 #include "ringlet/geometry/overlaps.h"
+#include "ringlet/math/lists.h"
 #include "ringlet/math/parallel.h"
 
 #include <algorithm>
-#include <numeric>
 #include <type_traits>
 #include <utility>
 
@@ -88,17 +88,19 @@ template <class Boxes> void BroadPhase::refit(View<unsigned char> stale, View<un
 }
 
 std::vector<PrimitivePair> BroadPhase::find_changed(const SweptBoxes &boxes, View<unsigned char> changed) {
-    std::vector<unsigned char> stale = std::exchange(escaped_, std::vector<unsigned char>(escaped_.size(), 0));
-    for (size_t v = 0; v < stale.size(); ++v) stale[v] |= changed[v];
+    std::vector<unsigned char> stale(escaped_.size());
+    parallel_for(int(stale.size()), [&](int v) { stale[v] = std::exchange(escaped_[v], 0) | changed[v]; });
     refit(stale, changed, [&](const auto &) -> const SweptBoxes & { return boxes; });
     return search_all(boxes);
 }
 
 std::vector<PrimitivePair> BroadPhase::find_escaped(const SweptBoxes &move, const SweptBoxes &bounds,
                                                     View<unsigned char> escaped, View<unsigned char> changed) {
-    std::vector<unsigned char> stale(changed.begin(), changed.end());
-    for (size_t v = 0; v < stale.size(); ++v) stale[v] |= escaped[v] != escaped_[v];
-    escaped_.assign(escaped.begin(), escaped.end());
+    std::vector<unsigned char> stale(escaped_.size());
+    parallel_for(int(stale.size()), [&](int v) {
+        stale[v] = changed[v] | (escaped[v] != escaped_[v]);
+        escaped_[v] = escaped[v];
+    });
     refit(stale, changed,
           [&](const auto &vertices) -> const SweptBoxes & { return any_of(escaped, vertices) ? move : bounds; });
     std::vector<PrimitivePair> found = search_all(move);
@@ -154,16 +156,17 @@ void BroadPhase::search(const Bvh &tree_a, const A &all_a, const Bvh &tree_b, co
 
 // Appends the pairs of all tasks, sorted: into bins by the first of a pair, which is below `firsts`, then within bins.
 void BroadPhase::gather(size_t firsts, Pairs &all) {
-    std::vector<size_t> bins(firsts + 1, 0);
-    for (const Pairs &found : found_)
-        for (const PrimitivePair &pair : found) ++bins[pair.primitive[0]];
+    const auto each = [&](int task, const auto &add) {
+        for (const PrimitivePair &pair : found_[task]) add(pair.primitive[0], pair);
+    };
+    size_t count = 0;
+    for (const Pairs &found : found_) count += found.size();
+    const Lists<PrimitivePair> bins(firsts, int(found_.size()), each, count);
     const size_t before_these = all.size();
-    std::exclusive_scan(bins.begin(), bins.end(), bins.begin(), before_these);
-    all.resize(bins.back());
-    for (const Pairs &found : found_)
-        for (const PrimitivePair &pair : found) all[bins[pair.primitive[0]]++] = pair; // bins[i] becomes the end of bin i
+    all.resize(before_these + count);
     parallel_chunks(int(firsts), 1024, [&](int i) {
-        std::sort(all.begin() + ptrdiff_t(i == 0 ? before_these : bins[i - 1]), all.begin() + ptrdiff_t(bins[i]),
+        const auto begin = all.begin() + ptrdiff_t(before_these) + bins.begin(i);
+        std::sort(begin, std::copy(bins.of(i).begin(), bins.of(i).end(), begin),
                   [](const PrimitivePair &a, const PrimitivePair &b) { return a.primitive[1] < b.primitive[1]; });
     });
 }

@@ -39,7 +39,7 @@ void MotionBounds::fit(const Move &move, const Fit &how) {
 }
 
 void MotionBounds::fit(const Move &move, const Fit &how, const std::vector<int> &vertices) {
-    for (const int v : vertices) fit_vertex(move, how, v);
+    parallel_for(int(vertices.size()), [&](int k) { fit_vertex(move, how, vertices[k]); });
     boxes_.refit({low_, high_}, vertices);
 }
 

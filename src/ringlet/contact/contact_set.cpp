@@ -133,7 +133,8 @@ std::vector<Contact> ContactSet::linearise(const CollisionMesh &mesh, const Cont
                       });
     };
     std::vector<Contact> found = collect_of_pairs<Contact>(pairs, add);
-    for_known(friction_, found, [](const FrictionState &before, Contact &now) { now.friction.reference -= before.slip; });
+    parallel_for_known(friction_, found,
+                       [](const FrictionState &before, Contact &now) { now.friction.reference -= before.slip; });
     if (guess_.empty()) return found;
     parallel_for(int(found.size()), [&](int k) {
         if (Friction &friction = found[k].friction; friction.coefficient > 0.0)
@@ -156,7 +157,8 @@ std::vector<PairEnergy> ContactSet::energies(const CollisionMesh &mesh, const Co
                       });
     };
     std::vector<PairEnergy> found = collect_of_pairs<PairEnergy>(pairs, add);
-    for_known(contacts_, found, [](const Contact &contact, PairEnergy &there) { there.stiffness = contact.barrier.stiffness; });
+    parallel_for_known(contacts_, found,
+                       [](const Contact &contact, PairEnergy &there) { there.stiffness = contact.barrier.stiffness; });
     return found;
 }
 
@@ -164,16 +166,22 @@ void ContactSet::find(const CollisionMesh &mesh, const ContactMaterial &material
                       View<unsigned char> objects, View<Vec3> start, View<Vec3> positions, double damping) {
     overlaps.activate(mesh, material, pairs); // the same until contacts are found again, whatever the stiffness is then
     std::vector<Contact> found = linearise(mesh, material, pairs, start, positions, damping);
-    const auto newest = resting_.insert(resting_.end(), lagged_.begin(), lagged_.end());
-    std::inplace_merge(resting_.begin(), newest, resting_.end(),
-                       [](const LaggedForce &a, const LaggedForce &b) { return a.name < b.name; });
-    for_known(resting_, found, [](const LaggedForce &before, Contact &now) {
+    if (resting_.empty()) {
+        resting_.swap(lagged_);
+    } else {
+        const auto newest = resting_.insert(resting_.end(), lagged_.begin(), lagged_.end());
+        std::inplace_merge(resting_.begin(), newest, resting_.end(),
+                           [](const LaggedForce &a, const LaggedForce &b) { return a.name < b.name; });
+    }
+    parallel_for_known(resting_, found, [](const LaggedForce &before, Contact &now) {
         if (now.gap < now.barrier.d_hat) now.friction.normal_force = before.force;
     });
-    std::erase_if(resting_, [&](const LaggedForce &lagged) { return any_marked(objects_of(mesh, lagged.name), objects); });
+    resting_ = collect<LaggedForce>(int(resting_.size()), [&](int k, std::vector<LaggedForce> &left) {
+        if (!any_marked(objects_of(mesh, resting_[k].name), objects)) left.push_back(resting_[k]);
+    });
     contacts_ = std::move(found);
-    lagged_.clear();
-    for (const Contact &contact : contacts_) lagged_.push_back({contact.name, contact.friction.normal_force});
+    lagged_.resize(contacts_.size());
+    parallel_for(int(contacts_.size()), [&](int k) { lagged_[k] = {contacts_[k].name, contacts_[k].friction.normal_force}; });
     index(mesh);
 }
 

@@ -32,7 +32,7 @@ void InitialOverlaps::settle(const std::vector<ContactPair> &pairs, const std::v
 
 void InitialOverlaps::activate(const CollisionMesh &mesh, const ContactMaterial &material,
                                const std::vector<ContactPair> &pairs) {
-    for_known(all_, pairs, name, [&](InitialOverlap &overlap, const ContactPair &pair) {
+    parallel_for_known(all_, pairs, name, [&](InitialOverlap &overlap, const ContactPair &pair) {
         const double stiffness = pair_stiffness(mesh, stencil(mesh, pair, pair.closest), material);
         overlap.activation = activation_distance(overlap.force / stiffness, overlap.gap);
     });

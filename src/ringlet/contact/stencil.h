@@ -3,7 +3,9 @@
 
 #include "ringlet/collision/narrow_phase.h"
 #include "ringlet/contact/settings.h"
+#include "ringlet/math/parallel.h"
 
+#include <algorithm>
 #include <cstdint>
 
 namespace ringlet {
@@ -25,21 +27,36 @@ inline std::array<int, 2> objects_of(const CollisionMesh &mesh, uint64_t contact
     return {mesh.object[edge_edge ? mesh.edges[i][0] : i], mesh.object[edge_edge ? mesh.edges[j][0] : mesh.triangles[j][0]]};
 }
 
+template <class Known, class Found, class NameOf, class Work>
+void for_known_in(Known &known, Found &found, size_t begin, size_t end, const NameOf &name_of, const Work &work) {
+    if (begin == end) return;
+    auto next = std::lower_bound(known.begin(), known.end(), name_of(found[begin]),
+                                 [](const auto &of, uint64_t name) { return of.name < name; });
+    for (size_t k = begin; k < end; ++k) {
+        const uint64_t name = name_of(found[k]);
+        while (next != known.end() && next->name < name) ++next;
+        if (next == known.end()) return;
+        if (next->name == name) work(*next, found[k]);
+    }
+}
+
 // Walks through two lists in the order of names together: calls work(known, found) for each of `found` whose name one of
 // `known` has.
 template <class Known, class Found, class NameOf, class Work>
 void for_known(Known &known, Found &found, const NameOf &name_of, const Work &work) {
-    auto next = known.begin();
-    for (auto &now : found) {
-        const uint64_t name = name_of(now);
-        while (next != known.end() && next->name < name) ++next;
-        if (next == known.end()) return;
-        if (next->name == name) work(*next, now);
-    }
+    for_known_in(known, found, 0, found.size(), name_of, work);
 }
 
-template <class Known, class Found, class Work> void for_known(Known &known, Found &found, const Work &work) {
-    for_known(known, found, [](const auto &now) { return now.name; }, work);
+// The same in parallel, where work() changes nothing but the two.
+template <class Known, class Found, class NameOf, class Work>
+void parallel_for_known(Known &known, Found &found, const NameOf &name_of, const Work &work) {
+    constexpr size_t range = 1024;
+    parallel_for(int((found.size() + range - 1) / range),
+                 [&](int r) { for_known_in(known, found, r * range, std::min(found.size(), (r + 1) * range), name_of, work); });
+}
+
+template <class Known, class Found, class Work> void parallel_for_known(Known &known, Found &found, const Work &work) {
+    parallel_for_known(known, found, [](const auto &now) { return now.name; }, work);
 }
 
 struct Stencil {

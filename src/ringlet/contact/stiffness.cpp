@@ -3,6 +3,7 @@
 #include "ringlet/math/parallel.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 namespace ringlet {
@@ -14,12 +15,17 @@ void ContactStiffness::begin_step(std::vector<double> largest, double dt) {
 
 bool ContactStiffness::raise_loads(const ContactSet &contacts) {
     const std::vector<Contact> &all = contacts.contacts();
-    bool raised = false;
-    for (size_t k = 0; k < all.size(); ++k)
+    std::atomic<bool> raised = false;
+    parallel_for(int(all.size()), [&](int k) {
+        const double force = contacts.lagged_forces()[k].force / all[k].loaded_fraction;
         for (const int v : all[k].at.vertex) {
-            const double force = contacts.lagged_forces()[k].force / all[k].loaded_fraction;
-            if (force > load_[v]) load_[v] = force, raised = true;
+            const std::atomic_ref<double> load(load_[v]); // several contacts have this vertex
+            double before = load.load(std::memory_order_relaxed);
+            while (force > before && !load.compare_exchange_weak(before, force, std::memory_order_relaxed)) {
+            }
+            if (force > before) raised.store(true, std::memory_order_relaxed);
         }
+    });
     return raised;
 }
 

@@ -34,11 +34,7 @@ public:
     size_t size() const { return size_; }
     void fill(double value) { std::fill(data(), data() + size_, value); }
 
-    AlignedVector copy() const {
-        AlignedVector same(AlignedMemory(bytes(size_)), size_);
-        std::copy_n(data(), size_, same.data());
-        return same;
-    }
+    static AlignedVector unset(size_t size) { return {AlignedMemory(bytes(size)), size}; } // to be written wholly
 
 private:
     AlignedVector(AlignedMemory memory, size_t size) : memory_(std::move(memory)), size_(size) {}

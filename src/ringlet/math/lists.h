@@ -17,8 +17,11 @@ template <class Item> class Lists {
 public:
     Lists() : starts_(1, 0) {}
     // each(k, add) calls add(list, item) for what k = 0 … count − 1 has to add. It is called twice; lists keep that order.
-    template <class Each> Lists(size_t lists, int count, const Each &each) : starts_(lists + 1, 0) {
-        if (count >= worth_threads) {
+    template <class Each> Lists(size_t lists, int count, const Each &each) : Lists(lists, count, each, size_t(count)) {}
+
+    // The same where the items are about `size`.
+    template <class Each> Lists(size_t lists, int count, const Each &each, size_t size) : starts_(lists + 1, 0) {
+        if (size >= worth_threads) {
             sort_in_parallel(int(lists), count, each);
             return;
         }
@@ -37,7 +40,8 @@ public:
     const std::vector<Item> &items() const { return items_; }
 
 private:
-    static constexpr int worth_threads = 1 << 16, parts = 64;
+    static constexpr size_t worth_threads = 1 << 16;
+    static constexpr int parts = 64;
 
     // A radix sort of two passes: of ranges of k into bins of consecutive lists, then within bins. Both are parallel, since no
     // part writes where another does.

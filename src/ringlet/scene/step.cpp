@@ -1,6 +1,6 @@
 // How a step of a scene goes: advect with bodies → limit → { contacts → assemble → solve → limit → line search → accept } →
 // commit. The braces are Newton's method, in solver/newton.cpp.
-#include "ringlet/math/parallel.h"
+#include "ringlet/math/parallel_copy.h"
 #include "ringlet/scene/advection.h"
 #include "ringlet/scene/data.h"
 #include "ringlet/scene/settings.h"
@@ -69,8 +69,8 @@ Vec3 mean_velocity_of_cloths(const SceneData &scene) {
 // rigidly.
 std::vector<unsigned char> advect_to(SceneData &scene, View<Vec3> targets, const Vec3 &drift, SceneReport &report) {
     const SceneVertices &vertices = scene.vertices;
-    const std::vector<Vec3> start = scene.configuration.positions;
-    std::vector<Vec3> led = start, end = start;
+    const std::vector<Vec3> start = parallel_copy(scene.configuration.positions);
+    std::vector<Vec3> led = parallel_copy(start), end = parallel_copy(start);
     for (const auto &[vertex, place] : scene.lagging) led[vertex] = place;
     for (int v = 0; v < vertices.count(); ++v)
         if (!vertices.mesh.moves[v]) end[v] = targets[v];
@@ -96,7 +96,7 @@ std::vector<Vec3> targets_on_arrival(const SceneData &scene, View<Vec3> targets)
 void move_to_initial_guess(SceneData &scene, const std::vector<unsigned char> &astray, double tolerance, AlignedVector &x,
                            Refinement &refinement, SceneReport &report) {
     const SceneVertices &vertices = scene.vertices;
-    const std::vector<Vec3> now = scene.configuration.positions;
+    const std::vector<Vec3> now = parallel_copy(scene.configuration.positions);
     scene.blocks.scatter(now, x);
     scene.blocks.for_active([&](int b) { scene.blocks[b].initial_guess(scene.blocks.of(b, x)); });
     PlannedMove move{now, {}};
@@ -105,7 +105,7 @@ void move_to_initial_guess(SceneData &scene, const std::vector<unsigned char> &a
         if (!vertices.mesh.moves[v] || astray[vertices.mesh.object[v]] ||
             (move.to[v] - now[v]).squaredNorm() < scene_settings::guess_rounding * scene_settings::guess_rounding)
             move.to[v] = now[v];
-    const std::vector<Vec3> guess = move.to;
+    const std::vector<Vec3> guess = parallel_copy(move.to);
     scene.configuration.limit(move, Yield::near_impacts, Candidates::Serve::later_moves, report);
     refinement.add(ObjectMoves(scene.blocks, now, guess, move.to), tolerance);
     scene.configuration.commit(move.to);
@@ -141,7 +141,7 @@ SceneReport take_step(SceneData &scene, const SceneInput &input, const SceneStep
     const StrandStep &step = settings.strands;
     if (!scene.begun) find_initial_contacts(scene, step.dt);
     if (scene.contact.parting_speed > 0.0) scene.objective.contacts.overlaps.grow(scene.contact.parting_speed * step.dt);
-    const std::vector<Vec3> start = scene.configuration.positions;
+    const std::vector<Vec3> start = parallel_copy(scene.configuration.positions);
     begin_contact(scene, step.dt);
     const std::vector<unsigned char> astray = advect_to(scene, input.targets, step.dt * mean_velocity_of_cloths(scene), report);
 

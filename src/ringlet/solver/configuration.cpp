@@ -1,5 +1,6 @@
 #include "ringlet/solver/configuration.h"
 
+#include "ringlet/math/parallel_copy.h"
 #include "ringlet/solver/settings.h"
 
 #include <algorithm>
@@ -52,7 +53,7 @@ void Configuration::add(const CcdReport &limited, SceneReport &report) {
 
 void Configuration::commit(const std::vector<Vec3> &to) {
     pairs.commit(positions, to);
-    positions = to;
+    parallel_copy(to, positions);
     add_to_record();
 }
 

@@ -75,15 +75,15 @@ AlignedVector CoupledSystem::solve(int b, const std::vector<Vec3> &at_points) co
 void CoupledSystem::first_iterate(Residual &r, Unknowns &x) {
     Couplings &couplings = objective_.couplings;
     const Mask all(clusters(), 1), blocks = blocks_with(all);
-    const std::vector<Vec3> zero(couplings.count(), Vec3::Zero());
-    r = zero, x = {zero, zero};
-    std::vector<Vec3> d = zero;
+    Unknowns joint, before;
+    Residual d, forces;
+    for (auto *points : {&r, &x.at, &x.force, &d, &forces, &joint.at, &joint.force, &before.at, &before.force})
+        points->resize(couplings.count());
     for_blocks(blocks, [&](int b) {
         for (int k = couplings.begin(b); k < couplings.end(b); ++k) {
-            if (is_exact(b))
-                d[k] = at(k, b, objective_.blocks.of(b, alone_));
-            else
-                r[k] = -at(k, b, objective_.blocks[b].gradient());
+            for (Unknowns *of : {&x, &joint, &before}) of->at[k] = of->force[k] = Vec3::Zero();
+            d[k] = is_exact(b) ? at(k, b, objective_.blocks.of(b, alone_)) : Vec3::Zero();
+            r[k] = is_exact(b) ? Vec3::Zero() : Vec3(-at(k, b, objective_.blocks[b].gradient()));
         }
     });
     couplings.multiply(d, objective_.pair_values(), all);
@@ -91,11 +91,9 @@ void CoupledSystem::first_iterate(Residual &r, Unknowns &x) {
         for (int k = couplings.begin(b); k < couplings.end(b); ++k) r[k] -= couplings.product(k);
     });
     if (!coarse_.empty()) {
-        Unknowns joint{zero, zero}, unused{zero, zero};
-        Residual forces = zero;
         coarse_.find_coefficients([&](int k) { return r[k]; });
         for_blocks(blocks, [&](int b) { coarse_.add_correction(b, joint.at, joint.force); });
-        extend(joint, Numbers(clusters(), 0.0), unused, forces, all);
+        extend(joint, Numbers(clusters(), 0.0), before, forces, all);
         for_blocks(blocks, [&](int b) {
             for (int k = couplings.begin(b); k < couplings.end(b); ++k)
                 x.at[k] = joint.at[k], x.force[k] = joint.force[k], r[k] -= forces[k];

@@ -1,5 +1,6 @@
 #include "ringlet/solver/line_search.h"
 
+#include "ringlet/math/parallel_copy.h"
 #include "ringlet/solver/settings.h"
 
 #include <algorithm>
@@ -85,7 +86,7 @@ LineSearchResult line_search(Objective &objective, const ReachablePairs &pairs, 
     for (int o = 0; o < objects; ++o)
         if (uphill[o]) step[o] = 0.0, ++result.cuts;
 
-    AlignedVector trial = x.copy();
+    AlignedVector trial = parallel_copy(x);
     move_along(blocks, x, step, path, std::vector<unsigned char>(objects, 1), trial);
     std::vector<unsigned char> evaluated = searched;
     for (int cut = 0;; ++cut) {

@@ -1,5 +1,6 @@
 #include "ringlet/solver/newton.h"
 
+#include "ringlet/math/parallel_copy.h"
 #include "ringlet/solver/newton_rules.h"
 
 #include <algorithm>
@@ -12,7 +13,7 @@ Newton::Newton(VertexTable &table, Objective &objective, LinearSystem &system, C
 
 SolverEffort Newton::minimise(View<Vec3> start, const NewtonSettings &settings, Refinement &refinement, AlignedVector &x,
                               SceneReport &report) {
-    const std::vector<Vec3> initial = configuration_.positions;
+    const std::vector<Vec3> initial = parallel_copy(configuration_.positions);
     RelativeDamping damping(objective_.blocks.all_exact()); // damped hair pulls at a cloth that holds it, and strains
     StoppingRule stopping(table_.objects, settings.tolerance);
     Stall stall(table_.objects);
@@ -128,7 +129,7 @@ void Newton::accept(PlannedMove move, const LineSearchResult &found, AlignedVect
 }
 
 std::vector<Vec3> Newton::end_of(const AlignedVector &direction) const {
-    std::vector<Vec3> end = configuration_.positions;
+    std::vector<Vec3> end = parallel_copy(configuration_.positions);
     parallel_for(table_.dynamic_vertices, [&](int v) {
         if (table_.mesh.moves[v]) end[v] += objective_.blocks.position(direction, v);
     });

@@ -1,6 +1,6 @@
 #include "ringlet/solver/search_path.h"
 
-#include "ringlet/math/parallel.h"
+#include "ringlet/math/parallel_copy.h"
 #include "ringlet/solver/settings.h"
 
 #include <algorithm>
@@ -162,11 +162,11 @@ LimitedPath limit_path(const Objective &objective, Configuration &configuration,
     const BlockSet &blocks = objective.blocks;
     const std::vector<int> &cluster = objective.couplings.clusters();
     const std::vector<Vec3> &now = configuration.positions;
-    AlignedVector end = x.copy();
-    std::vector<Vec3> wanted = now;
-    PlannedMove move{{}, now};
+    AlignedVector end = parallel_copy(x);
+    std::vector<Vec3> wanted = parallel_copy(now);
+    PlannedMove move{{}, parallel_copy(now)};
     set_end_of_path(blocks, table, now, x, path, blocks.active_objects(), end, wanted, move.apex);
-    move.to = wanted;
+    parallel_copy(wanted, move.to);
     configuration.limit(move, Yield::as_a_whole, limits.serve, report);
 
     std::vector<double> left = fractions_left(blocks, now, wanted, move.to);
