@@ -56,12 +56,13 @@ void bind_live(nb::module_ &module) {
     nb::class_<DistanceGrid>(module, "DistanceGrid", "Signed distance to a triangle mesh [m] on a grid, negative inside.")
         .def(
             "__init__",
-            [](DistanceGrid *grid, const Solid &solid, const Array1<double> &low, const Array1<double> &high, double cell) {
+            [](DistanceGrid *grid, const Solid &solid, const Array1<double> &low, const Array1<double> &high, double cell,
+               double band) {
                 const Vec3 from = vector_of(low), to = vector_of(high);
                 const nb::gil_scoped_release release;
-                new (grid) DistanceGrid(solid, from, to, cell);
+                new (grid) DistanceGrid(solid, from, to, cell, band);
             },
-            "solid"_a, "low"_a, "high"_a, "cell"_a)
+            "solid"_a, "low"_a, "high"_a, "cell"_a, "band"_a)
         .def(
             "at",
             [](const DistanceGrid &grid, const Array3<double> &places) {

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from ringlet.live.hanging import HangingRods
 from ringlet.live.rods import HELD, HELD_EDGE, VERTICES, Rods, Wire
 from ringlet.motion import HelicalSpring
 from ringlet.sim.strands import Strands
@@ -61,6 +62,25 @@ def test_a_rod_has_the_mass_and_the_drag_of_its_lock() -> None:
     whole = Strands(curves, material.model_copy(update={"correct_resolution": False}), HELD)
     assert rod.masses.sum() == pytest.approx(whole.masses.sum(), rel=1e-3)
     assert rod.drag.sum() == pytest.approx(whole.drag.sum(), rel=1e-3)
+
+
+def test_soft_hair_swings_as_a_hanging_chain() -> None:
+    """It swings at 0.191 √(g / l); with a dead load in place of tension it would swing at a tenth of that."""
+    length, gravity, dt = 0.3, (0.0, -9.81, 0.0), 1.0 / 480.0
+    line = Curves.from_list([np.outer(np.linspace(0.0, length, 60), [0.0, -1.0, 0.0])])
+    wire = Wire.of(line, MATERIAL.model_copy(update={"bend_scale": 0.02}), {})
+    strands, support = HangingRods(Rods.of(line), wire, gravity).strands(wire, gravity)
+    strands.place(Rods.of(line).points)
+    still = strands.positions.copy()
+    strands.velocities[HELD:, 2] = 0.05 * np.linspace(0.0, 1.0, VERTICES - HELD)
+    aside = []
+    for _ in range(480):
+        strands.step(still, dt, gravity=gravity, forces=support)
+        aside.append(strands.positions[-1, 2])
+    crossings = np.flatnonzero(np.diff(np.sign(aside))) * dt
+    assert len(crossings) >= 2
+    frequency = 0.5 / np.diff(crossings).mean()
+    assert frequency == pytest.approx(0.191 * np.sqrt(9.81 / length), rel=0.1)
 
 
 def test_a_straight_lock_is_a_rod_of_its_own_stiffness() -> None:

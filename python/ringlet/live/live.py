@@ -7,7 +7,6 @@ share their velocities, and their coils are stiffer by what contact adds. docs/l
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,25 +15,26 @@ from ringlet import _core
 from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Mesh
+from ringlet.live.hanging import HangingRods
 from ringlet.live.rods import VERTICES, Rods, Wire, places, vertex_places
 from ringlet.shot.material import Material
 from ringlet.shot.solver import Solver
 from ringlet.sim.core import Vector
 from ringlet.sim.cores import Cores
 from ringlet.sim.shot_strands import WANTED
-from ringlet.sim.strands import Planes, Strands
+from ringlet.sim.strands import Planes
 from ringlet.sim.worn import worn_factors
 
 Array = NDArray[np.float64]
 
 GRAVITY = (0.0, -9.81, 0.0)  # [m/s²]
-CONTACT = 2.8e-8  # EI that contact adds to a lock in a crowd [N m²]: six times that of a hair
+CONTACT = 2.2e-8  # EI that contact adds to a lock in a crowd [N m²]: 4.7 times that of a hair
 SOLVER = Solver(newton=2, tolerance=1e-5, integrator="backward_euler")
 
 CELL, MARGIN = 0.02, 0.1  # of the grid through which neighbours share motion, and how far it goes beyond the hair [m]
 SHARE, KEEP = 0.7, 0.9  # see src/ringlet/live/shared_velocities.h
 
-DISTANCES = 0.005  # cell of the grids of distances to bodies [m]
+DISTANCES, BAND = 0.006, 0.02  # cell of the grids of distances to bodies, and where these are the closest [m]
 CLEARANCE = 5e-4  # of a coil from them [m]
 FIRM = 1000.0  # stiffness of a body, relative to the inertia of a vertex in a step
 NEAR = 0.1  # from here on a body may be met in a step [m]
@@ -92,6 +92,7 @@ class Live:
         self._grids: list[tuple[_core.DistanceGrid, bool]] = []
         self._ease = np.zeros(0)
         self._set_groom(groom)
+        self.reset()
 
     @property
     def head(self) -> Array:
@@ -254,7 +255,7 @@ class Live:
         self._ease = np.zeros(0)
 
     def _set_groom(self, groom: Groom) -> None:
-        """Takes over a groom, with its hair at rest where it is groomed on the head."""
+        """Takes over a groom; its hair is to be placed then."""
         groom.locks.check("live: locks").check_strands("live: locks")
         self._cores, self._ease = Cores.of(groom), np.zeros(0)
         self._rods = Rods.of(self._cores.groom.locks)
@@ -269,7 +270,9 @@ class Live:
         )
         self._grid = _core.VelocityGrid(rods.min(axis=0) - MARGIN, rods.max(axis=0) + MARGIN, CELL)
         self._set_bodies(rods)
-        self._set_strands(at=_moved(rods, self._pose))
+        self._hanging = HangingRods(self._rods, self._wire(), self._groomed_gravity)
+        self._strands, self._support = self._hanging.strands(self._wire(), self._groomed_gravity)
+        self._held = np.ascontiguousarray(self._strands.held, np.uint8)
 
     def _set_bodies(self, rods: Array) -> None:
         """Samples the distances to bodies around the hair; what is groomed closer than its coil is wide stays so."""
@@ -281,35 +284,36 @@ class Live:
             for meshes, moves in ((self._bodies, True), (self._still, False)):
                 for mesh in meshes:
                     solid = _core.Solid(np.ascontiguousarray(mesh.points, np.float64), mesh.triangles)
-                    self._grids.append((_core.DistanceGrid(solid, self._low, self._high, DISTANCES), moves))
+                    self._grids.append((_core.DistanceGrid(solid, self._low, self._high, DISTANCES, BAND), moves))
         for grid, _ in self._grids:
             self._clearance = np.minimum(self._clearance, grid.at(rods)[0])
 
-    def _set_strands(self, at: Array | None = None) -> None:
-        """Makes the rods of the present material; at rest at some positions, or where they are."""
+    def _wire(self) -> Wire:
+        """What the locks that are simulated are made of."""
         locks = self._cores.groom.locks
         factors: dict[str, Array] = dict(self._cores.material())
-        for name, factor in worn_factors(
-            locks, self._material, factors.get("radius", np.ones(len(locks.points)))
-        ).items():
+
+        def multiply(name: str, factor: Array) -> None:
             factors[name] = factors.get(name, 1.0) * factor
+
+        radius = factors.get("radius", np.ones(len(locks.points)))
+        for name, factor in worn_factors(locks, self._material, radius).items():
+            multiply(name, factor)
         for name, wanted in WANTED.items():
             if wanted in locks.curve:
-                factors[name] = factors.get(name, 1.0) * np.repeat(locks.curve[wanted], locks.counts)
-        memory: dict[str, Any] = {} if at is not None else self._strands.memory
-        self._strands: Strands = self._rods.strands(Wire.of(locks, self._material, factors, self._contact))
-        if at is None:
-            self._strands.recall(memory)
-        else:
-            self._strands.place(at)
-        self._held = np.ascontiguousarray(self._strands.held, np.uint8)
-        # In the frame of the head: with this load and the gravity in which it was groomed, hair hangs as it is groomed.
-        self._support = -np.outer(self._strands.masses, self._groomed_gravity)
+                multiply(name, np.repeat(locks.curve[wanted], locks.counts))
+        return Wire.of(locks, self._material, factors, self._contact)
+
+    def _set_strands(self) -> None:
+        """Makes the rods of the present material; the hair goes on from where it is."""
+        memory = self._strands.memory
+        self._strands, self._support = self._hanging.strands(self._wire(), self._groomed_gravity)
+        self._strands.recall(memory)
 
     def _go_on(self, ids: NDArray[np.int64], rods: Array, velocities: Array) -> None:
         """Puts the rods of locks that were there before where they were; held vertices are with the new groom."""
         _, old, new = np.intersect1d(ids, self._rods.curves.ids, return_indices=True)
-        at = self._strands.positions.reshape(-1, VERTICES, 3).copy()
+        at = _moved(self._rods.points, self._pose).reshape(-1, VERTICES, 3)
         free = ~np.asarray(self._strands.held).reshape(-1, VERTICES)[0]
         at[np.ix_(new, np.flatnonzero(free))] = rods[np.ix_(old, np.flatnonzero(free))]
         self._strands.place(at.reshape(-1, 3))

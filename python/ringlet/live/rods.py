@@ -130,10 +130,18 @@ class Rods:
         curves = Curves(vertices.reshape(-1, 3), offsets, locks.ids)
         return cls(curves, radius, np.clip(length / locks.lengths(), LEAST_RISE, 1.0))
 
-    def strands(self, wire: Wire) -> Strands:
-        """The rods in motion, as stiff and as heavy as coils of a wire are along their axes."""
-        coil = HelicalSpring(self.radius, self.rise, wire.bend, wire.twist, wire.pull)
-        density, bend = wire.density / self.rise, np.asarray(coil.axial_bend)
+    def coil(self, wire: Wire) -> HelicalSpring:
+        """The coils of a wire about them."""
+        return HelicalSpring(self.radius, self.rise, wire.bend, wire.twist, wire.pull)
+
+    def strands(self, wire: Wire, rest: Array | None = None) -> Strands:
+        """The rods in motion, as stiff and as heavy as coils of a wire are along their axes.
+
+        rest: their rest shape [m], shape (n, 3); as groomed by default
+        """
+        curves = self.curves if rest is None else self.curves.with_points(rest)
+        coil, bend = self.coil(wire), np.asarray(self.coil(wire).axial_bend)
+        density = wire.density / self.rise * self.curves.lengths() / curves.lengths()
         factors = {
             "radius": np.sqrt(density),
             "stretch": coil.axial_stretch / density,
@@ -143,7 +151,7 @@ class Rods:
             "drag": wire.drag / self.rise,
         }
         return Strands(
-            self.curves,
+            curves,
             UNIT.model_copy(update={"mass_damping": wire.mass_damping}),
             HELD,
             {name: np.repeat(factor, VERTICES) for name, factor in factors.items()},
