@@ -42,13 +42,13 @@ def test_long_hair_between_a_turning_head_and_a_shirt_stops_neither():
     assert lags[-1] < max(max(lags), 1e-9)
 
 
-@pytest.mark.parametrize("locks", [100, 150, 200])
+@pytest.mark.parametrize("locks", [60, 100, 150])
 def test_cloth_put_into_hair_crosses_nothing_and_keeps_moving(locks):
     """A ribbon pushes locks aside on a resting head; it never moves rigidly for two frames in a row."""
     motion = start("ribbon", locks=locks)
     (ribbon,), moved = motion.garments, []
     before = ribbon.cloth.positions.copy()
-    for frame in judged(motion, 24):
+    for frame in judged(motion, 20):
         assert frame.crossings == 0
         assert frame.statistics["contact"]["lag"] == 0.0  # its pins arrive
         assert frame.statistics["cloth"]["ribbon"]["max_stretch"] < 0.1

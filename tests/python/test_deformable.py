@@ -94,11 +94,14 @@ def test_rods_that_cannot_be_written_are_refused(groom, tmp_path, target, option
     assert not (tmp_path / target).exists()
 
 
-def test_newton_imports_a_rod_for_each_lock_with_its_mass_and_stiffness(groom, tmp_path):
+@pytest.fixture
+def newton():
     if any(importlib.util.find_spec(name) is None for name in ("newton", "newton_usd_schemas")):
         pytest.skip("newton is not installed: pip install newton newton-usd-schemas")
-    import newton
+    return importlib.import_module("newton")
 
+
+def test_newton_imports_a_rod_for_each_lock_with_its_mass_and_stiffness(newton, groom, tmp_path):
     convert(groom, tmp_path / "rods.usdc", deformable=tmp_path / "a.shot.toml")
     builder = newton.ModelBuilder()
     with warnings.catch_warnings(record=True) as said:
