@@ -5,14 +5,18 @@ from __future__ import annotations
 import re
 import threading
 import time
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 from pages import page, serving
 from ringlet.viewer.play import live_hair
-from ringlet.viewer.play.live_hair import LiveHair, LiveScene, rods_message, step_message
+from ringlet.viewer.play.head import MOTIONS, Head, Motion, clip_motion
+from ringlet.viewer.play.live_hair import LiveHair
+from ringlet.viewer.play.mover import Hand, LiveScene, Mover, neck, rods_message, step_message
 from ringlet.viewer.publisher import Publisher
 from ringlet.viewer.show.display_groom import DisplayGroom, GroomEvaluator
 from ringlet.viewer.wire import split
@@ -42,11 +46,12 @@ def turned() -> np.ndarray:
 
 def test_messages_carry_locks_to_where_they_are(groom: Groom) -> None:
     """As the page carries them: a frame along each rod, and a smooth weight between two vertices."""
-    live = ringlet.Live(groom)
+    mover = Mover(LiveScene(groom, None, []), print)
+    live = mover.live
     live.head = turned()
     live.reset()
-    rods = split(rods_message(3, groom, live))[1]
-    header, arrays = split(step_message(3, 5, LiveScene(groom, None, []), live, ""))
+    rods = split(rods_message(3, mover))[1]
+    header, arrays = split(step_message(3, 5, mover, ""))
     assert (header["key"], header["step"]) == (3, 5)
     head = np.reshape(header["head"], (3, 4))
     expected = rods["points"].reshape(-1, 3) @ head[:, :3].T + head[:, 3]
@@ -60,9 +65,17 @@ def test_messages_carry_locks_to_where_they_are(groom: Groom) -> None:
     assert weight[:40] == pytest.approx(u * u * (3 - 2 * u), abs=1e-5)
 
 
+def test_the_neck_is_the_first_narrow_part_below_the_roots(groom: Groom) -> None:
+    height, around = np.meshgrid(np.linspace(-0.2, 0.0, 60), np.linspace(0.0, 2.0 * np.pi, 20))
+    radius = np.where(height > -0.08, 0.02 + 0.5 * np.abs(height + 0.06), 0.03 + 0.5 * np.abs(height + 0.15))
+    places = np.stack([radius * np.cos(around) + 0.01, height, radius * np.sin(around)], axis=-1).reshape(-1, 3)
+    body = replace(groom, scalp=replace(groom.scalp, points=places))
+    assert neck(body) == pytest.approx([0.01, -0.06, 0.0], abs=0.012)
+
+
 def test_a_frame_of_the_example_s_locks_is_small(groom: Groom) -> None:
     """100 800 bytes for the 1 050 locks of the example, and a header."""
-    message = step_message(1, 1, LiveScene(groom, None, []), ringlet.Live(groom), "")
+    message = step_message(1, 1, Mover(LiveScene(groom, None, []), print), "")
     assert len(message) - 512 < 8 * 12 * len(groom.locks)
 
 
@@ -114,13 +127,15 @@ def test_without_locks_one_line_says_so(groom: Groom) -> None:
 class Slow:
     """Hair whose steps take long."""
 
-    dt = 0.02
+    live = SimpleNamespace(dt=0.02)
 
-    def __init__(self, scene: Any) -> None:
-        self.steps = 0
+    def __init__(self, *_: Any) -> None:
+        pass
 
-    def step(self) -> str:
-        self.steps += 1
+    def change(self, scene: LiveScene) -> bool:
+        return False
+
+    def step(self, hand: Hand, seconds: float) -> str:
         time.sleep(0.05)
         return ""
 
@@ -128,7 +143,7 @@ class Slow:
 def run_slow(monkeypatch: pytest.MonkeyPatch, *, seconds: float, watched: bool, step: Any = Slow.step) -> list[Any]:
     """Numbers of the steps that were sent in some seconds, or messages of what failed."""
     sent: list[int] = []
-    monkeypatch.setattr(live_hair, "Live", Slow)
+    monkeypatch.setattr(live_hair, "Mover", Slow)
     monkeypatch.setattr(Slow, "step", step)
     monkeypatch.setattr(live_hair, "rods_message", lambda *_: b"")
     monkeypatch.setattr(live_hair, "step_message", lambda key, number, *_: sent.append(number) or b"")
@@ -146,7 +161,7 @@ def test_a_slow_step_leaves_others_out(monkeypatch: pytest.MonkeyPatch) -> None:
     sent = run_slow(monkeypatch, seconds=0.5, watched=True)
     assert sent[0] == 0
     assert set(np.diff(sent)) & {2, 3, 4}, sent
-    assert sent[-1] == pytest.approx(0.45 / Slow.dt, abs=8)
+    assert sent[-1] == pytest.approx(0.45 / Slow.live.dt, abs=8)
 
 
 def test_without_a_page_time_stands_still(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -154,7 +169,7 @@ def test_without_a_page_time_stands_still(monkeypatch: pytest.MonkeyPatch) -> No
 
 
 def test_a_step_that_fails_ends_it_with_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
-    def fail(self: Any) -> str:
+    def fail(*_: Any) -> str:
         raise ringlet.UserError("live: locks: has no points; give some")
 
     assert run_slow(monkeypatch, seconds=0.1, watched=True, step=fail) == ["live: locks: has no points; give some"]
@@ -166,3 +181,118 @@ def trouble(one: Any) -> str:
         header, _ = split(one.socket.receive_bytes())
         if header["kind"] == "trouble":
             return re.sub(r"\s+", " ", header["message"])
+
+
+STEP = 1.0 / 24.0
+
+
+def poses(head: Head, seconds: float) -> np.ndarray:
+    """Transforms of the head in some seconds, shape (steps, 4, 4)."""
+    found = []
+    for _ in range(round(seconds / STEP)):
+        head.advance(STEP)
+        found.append(head.transform)
+    return np.array(found)
+
+
+def away(transforms: np.ndarray) -> np.ndarray:
+    """Largest change of an entry from the pose as groomed, of each."""
+    return np.abs(transforms - np.eye(4)).reshape(-1, 16).max(axis=1)
+
+
+def test_a_head_that_is_let_go_returns_within_a_second() -> None:
+    head = Head(np.array([0.0, 0.3, 0.0]))
+    head.hold(np.array([0.0, 0.9, 0.0]), np.array([0.1, 0.0, 0.0]))
+    held = poses(head, 0.2)
+    assert held[-1][:3, :3] @ [0.0, 0.0, 1.0] == pytest.approx([np.sin(0.9), 0.0, np.cos(0.9)])
+    assert held[-1] @ [0.0, 0.3, 0.0, 1.0] == pytest.approx([0.1, 0.3, 0.0, 1.0])  # the neck stays on the trunk
+    assert head.trunk == pytest.approx([0.1, 0.0, 0.0])
+    head.let_go()
+    back = poses(head, 2.0)
+    assert away(back[:1])[0] > 0.3  # no jump
+    assert away(back[24:])[:].max() < 0.05
+    assert away(back[-1:])[0] < 2e-3
+
+
+@pytest.mark.parametrize("name", sorted(MOTIONS))
+def test_motions_begin_and_end_at_rest_and_never_jump(name: str) -> None:
+    head, motion = Head(np.zeros(3)), MOTIONS[name]
+    head.play(name, motion)
+    goes_on = motion.seconds == np.inf
+    first = poses(head, 3.0)
+    if goes_on:
+        head.play(name, motion)
+    moved = np.concatenate([np.eye(4)[None], first, poses(head, 1.0)])
+    assert away(moved).max() > 0.01
+    assert away(moved[-1:])[0] == 0.0
+    assert np.abs(np.diff(moved[:, :3, 3], axis=0)).max() < 0.1  # [m] a step: no throw
+    assert np.abs(np.diff(moved[:, :3, :3], axis=0)).max() < 0.3
+
+
+def test_a_clip_plays_in_a_loop_without_a_jump() -> None:
+    clip = np.tile(np.eye(4), (10, 1, 1))
+    clip[:, 0, 3] = 0.02 * np.arange(10)
+    motion: Motion = clip_motion(clip, np.zeros(3), 24.0)
+    shifts = np.array([motion.at(k / 24.0)[1][0] for k in range(60)])
+    assert shifts[:10] == pytest.approx(clip[:, 0, 3])
+    assert shifts[21:31] == pytest.approx(clip[:, 0, 3], abs=1e-9)  # 9 steps, and 12 back
+    assert np.abs(np.diff(shifts)).max() < 0.03
+    assert clip_motion(clip[:1], np.zeros(3), 24.0).at(3.0)[1] == pytest.approx(np.zeros(3))
+
+
+@pytest.mark.parametrize("pose", [((0.0, 9.0, 0.0), (0.0, 0.0, 0.0)), ((0.0, 0.0, 0.0), (5.0, 3.0, 0.0))])
+def test_a_head_that_is_thrown_keeps_its_hair_and_says_so(groom: Groom, pose: Any) -> None:
+    mover, hand = Mover(LiveScene(groom, None, []), print), Hand(pose)
+    notes = [mover.step(hand, STEP) for _ in range(3)]
+    assert notes[1:] == ["", ""]
+    assert "thrown" in notes[0] and "\n" not in notes[0]
+    hand.held = None
+    for _ in range(48):
+        mover.step(hand, STEP)
+    assert np.abs(mover.live.positions - groom.locks.points).max() < 5e-3
+
+
+def test_wind_blows_hair_to_the_other_side_and_ends(groom: Groom) -> None:
+    mover, hand = Mover(LiveScene(groom, None, []), print), Hand(side="left")
+    for _ in range(24):
+        mover.step(hand, STEP)
+    assert (mover.live.positions - groom.locks.points)[groom.locks.offsets[1:] - 1, 0].mean() < -1e-4
+    hand.side = ""
+    for _ in range(48):
+        mover.step(hand, STEP)
+    assert np.linalg.norm(mover.live.wind) < 1e-3
+
+
+def test_the_hand_and_buttons_move_the_head_on_all_pages(folder: Path) -> None:
+    with serving(folder, "small.shot.toml") as client, page(client) as leader, page(client, "two") as other:
+        leader.receive("measured")
+        leader.send(kind="go_live", on=True)
+        leader.receive("live_step")
+        still = np.eye(4)[:3].ravel().tolist()
+        leader.send(kind="hold_head", turn=[0.0, 0.5, 0.0])
+        turned_head = [np.cos(0.5), 0.0, np.sin(0.5)]
+        while other.receive("live_step")["head"][:3] != pytest.approx(turned_head):
+            pass
+        other.send(kind="hold_head", turn=[0.0, -0.5, 0.0])  # does not lead
+        leader.send(kind="hold_head", turn=None)
+        while leader.receive("live_step")["head"] != pytest.approx(still, abs=1e-3):
+            assert leader.received[-1]["head"][2] > -0.4
+        leader.send(kind="move_head", motion="clip")
+        assert leader.receive("live", goes_on=["clip"])["on"]
+        while leader.receive("live_step")["head"] == pytest.approx(still, abs=2e-3):
+            pass
+        leader.send(kind="move_head", motion="clip")
+        leader.receive("live", goes_on=[])
+        leader.send(kind="blow", side="front")
+        leader.receive("live", wind="front")
+        leader.send(kind="hold_head", turn=[None, 0.0, 0.0])  # NaN, as JSON says it
+        assert trouble(leader) == "message: turn[0] is None; must be a number"
+
+
+def test_without_a_shot_no_clip_plays(folder: Path) -> None:
+    with serving(folder) as client, page(client) as leader:
+        leader.receive("measured")
+        leader.send(kind="go_live", on=True)
+        leader.receive("live_step")
+        leader.send(kind="move_head", motion="clip")
+        assert trouble(leader) == "live: there is no shot whose clip could play; open one"

@@ -8,6 +8,7 @@ import { HandTools } from "./panel/hand_tools";
 import { ClearArea } from "./panel/clear_area";
 import { CompareBar } from "./panel/compare";
 import { bindKey, plainKey } from "./panel/keys";
+import { HeadHandle } from "./panel/head_handle";
 import { Lens } from "./panel/lens";
 import { LiveHair } from "./panel/live";
 import { LockTool } from "./panel/lock";
@@ -87,8 +88,9 @@ export class App {
 
     // What is over the picture goes with it
     const pointer = new PresenterPointer(model, viewer);
-    picture.append(this.lock.handles, this.tools.brush.ring, pointer.element, this.render.element, references.element, notes.marks);
-    viewer.onPaint = () => [this.lock, pointer, notes].forEach((one) => one.place());
+    const head = new HeadHandle(model, viewer);
+    picture.append(head.element, this.lock.handles, this.tools.brush.ring, pointer.element, this.render.element, references.element, notes.marks);
+    viewer.onPaint = () => [this.lock, pointer, notes, head].forEach((one) => one.place());
     viewer.onDraw = (statistics) => this.status.drew(statistics);
 
     // The panels around it

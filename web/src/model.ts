@@ -65,6 +65,8 @@ type Topic =
   | "clear"
   | "live";
 
+const NOT_LIVE: Live = { kind: "live", on: false, fps: 0, goes_on: [], wind: "" };
+
 export class Model {
   welcome: Welcome | null = null;
   documents: Partial<Record<File, Document>> = {};
@@ -77,7 +79,7 @@ export class Model {
   overlay: OverlayName | "" = "";
   timeline: Timeline | null = null;
   /** Whether hair moves live. */
-  live: Live = { kind: "live", on: false, fps: 0 };
+  live = NOT_LIVE;
   /** The looks that are compared, by side; that of the open recipe too, once there is another. */
   compared: Partial<Record<Side, Compared>> = {};
   snapshots: Snapshot[] = [];
@@ -207,7 +209,7 @@ export class Model {
     this.compared = {};
     this.locks = [];
     this.followed = null;
-    this.live = { kind: "live", on: false, fps: 0 };
+    this.live = NOT_LIVE;
     this.chosen = { file: "recipe", place: ["curl"] };
   }
 

@@ -473,6 +473,25 @@ export interface GoLive {
   on: boolean;
 }
 
+/** A hand holds the head of live hair, or lets go. */
+export interface HoldHead {
+  kind: "hold_head";
+  turn: [number, number, number] | null;
+  shift?: [number, number, number];
+}
+
+/** Plays a motion of the head of live hair; ``walk`` and ``clip``, that of the shot, stop where they play. */
+export interface MoveHead {
+  kind: "move_head";
+  motion: "nod" | "turn" | "shake" | "hop" | "walk" | "clip";
+}
+
+/** Lets wind blow from a side of the head, or ends it. */
+export interface Blow {
+  kind: "blow";
+  side: "" | "left" | "right" | "front" | "back";
+}
+
 /** Takes a snapshot of the current look. picture: PNG or JPEG in base64. */
 export interface TakeSnapshot {
   kind: "take_snapshot";
@@ -910,11 +929,13 @@ export interface Rendered {
   png: Uint8Array;
 }
 
-/** Whether hair moves live. fps: steps a second; 0 while the first one is being prepared. */
+/** Whether hair moves live. */
 export interface Live {
   kind: "live";
   on: boolean;
   fps: number;
+  goes_on: string[];
+  wind: string;
 }
 
 /** The rods that carry locks in live motion, as groomed. */
@@ -981,6 +1002,9 @@ export type FromPage =
   | AskMotion
   | Watch
   | GoLive
+  | HoldHead
+  | MoveHead
+  | Blow
   | TakeSnapshot
   | EditSnapshot
   | DeleteSnapshot

@@ -2,9 +2,9 @@
 
 import { expect, test, vi } from "vitest";
 import { Matrix4 } from "three";
-import type { LiveStep, Rods as RodsMessage } from "../src/protocol";
+import type { Live, LiveStep, Rods as RodsMessage } from "../src/protocol";
 import { Rods } from "../src/view/rods";
-import { control, find, press } from "./controls";
+import { choose, control, drag, find, press } from "./controls";
 import { open, type Page } from "./page";
 
 const VERTICES = 4;
@@ -35,7 +35,7 @@ function stepOf(rods: RodsMessage, motion: Matrix4, more: Partial<LiveStep> = {}
   return { kind: "live_step", key: rods.key, step: 0, head, trunk: [0, 0, 0], note: "", points: moved(rods.points, motion), worn: new Float32Array(), ...more };
 }
 
-const lives = (page: Page, on: boolean, fps = 24) => page.hear({ kind: "live", on, fps });
+const lives = (page: Page, on: boolean, fps = 24, more: Partial<Live> = {}) => page.hear({ kind: "live", on, fps, goes_on: [], wind: "", ...more });
 const headBody = (page: Page) => page.app.viewer.stage.bodies.get(0)!.surface("a");
 
 /** The small example in live motion, its hair one step on. */
@@ -135,4 +135,59 @@ test("the hair of a shot in a frame is at rest before it moves, and the frame co
   expect(a.placed).toEqual(rest);
   lives(page, false, 0);
   expect(a.placed).toEqual(framed);
+});
+
+test("buttons play motions and wind; those that go on are pressed on all pages", async () => {
+  const [page] = await moving();
+  control("Nod").click();
+  control("Walk").click();
+  choose(control("Wind"), "left");
+  expect(page.said("move_head").map(({ motion }) => motion)).toEqual(["nod", "walk"]);
+  expect(page.last("blow").side).toBe("left");
+  lives(page, true, 24, { goes_on: ["walk"], wind: "back" });
+  expect(control("Walk").getAttribute("aria-pressed")).toBe("true");
+  expect(control("Nod").getAttribute("aria-pressed")).toBe(null);
+  expect(control<HTMLSelectElement>("Wind").value).toBe("back");
+  expect(find("[data-motion=clip]").hidden).toBe(true); // no shot is open
+  page.role({ leads: false });
+  expect(control<HTMLButtonElement>("Hop").disabled).toBe(true);
+});
+
+test("the handle turns the head as it is seen, moves it with Shift, and lets go", async () => {
+  const [page] = await moving();
+  page.app.viewer.frame(0, 0); // from the front
+  page.app.viewer.camera.updateMatrixWorld();
+  page.app.viewer.onPaint();
+  const handle = control("Head");
+  expect(handle.style.translate).toMatch(/px/);
+  drag(handle, [100, 100], [[200, 100]]);
+  vi.advanceTimersByTime(50);
+  const [held, free] = page.said("hold_head");
+  expect(held.turn![1]).toBeCloseTo(0.8, 2); // to the right of the picture
+  expect(Math.abs(held.turn![0])).toBeLessThan(0.05);
+  expect(free).toEqual({ kind: "hold_head", turn: null });
+  drag(handle, [100, 100], [[100, 50], [100, 0]], { shiftKey: true });
+  vi.advanceTimersByTime(50);
+  const moved = page.said("hold_head").filter(({ turn }) => turn !== null).at(-1)!;
+  expect(moved.turn).toEqual([0, 0, 0]);
+  expect(moved.shift![1]).toBeGreaterThan(0.01);
+  expect(page.last("hold_head").turn).toBe(null);
+  press("ArrowLeft", {}, handle);
+  expect(page.last("hold_head").turn).toBe(null); // the key is up again
+  expect(page.said("hold_head").at(-2)!.turn![1]).toBeLessThan(-0.3);
+});
+
+test("a pointer that is gone, and a page that no longer leads, let go", async () => {
+  const [page] = await moving();
+  page.app.viewer.onPaint();
+  const handle = control("Head");
+  const point = (name: string, clientX: number) => handle.dispatchEvent(new PointerEvent(name, { clientX, clientY: 0, button: 0, pointerId: 1, bubbles: true }));
+  for (const end of [() => point("lostpointercapture", 0), () => page.role({ leads: false })]) {
+    point("pointerdown", 0);
+    point("pointermove", 50);
+    vi.advanceTimersByTime(50);
+    expect(page.last("hold_head").turn).not.toBe(null);
+    end();
+    expect(page.last("hold_head").turn).toBe(null);
+  }
 });

@@ -27,8 +27,9 @@ from ringlet.viewer.keep.comparer import Comparer
 from ringlet.viewer.keep.reviewing import Reviewing
 from ringlet.viewer.keep.sharing import Sharer
 from ringlet.viewer.pages import Page, Pages
-from ringlet.viewer.play.live_hair import LiveHair, LiveScene
+from ringlet.viewer.play.live_hair import LiveHair
 from ringlet.viewer.play.lock_motion import LockMotions, Question
+from ringlet.viewer.play.mover import LiveScene
 from ringlet.viewer.play.playback import Playback
 from ringlet.viewer.project import Project
 from ringlet.viewer.publisher import Publisher
@@ -196,6 +197,7 @@ class Session:
 
     def _end_gesture(self) -> None:
         self._editing.end_gesture()
+        self._live.let_go()
 
     def _welcome(self, name: str) -> bytes:
         """First message to the page of a name."""
@@ -247,6 +249,10 @@ class Session:
 
     def handle(self, page: Page, message: protocol.FromPage) -> None:
         """Handles a message of a page and acknowledges it; raises UserError for a request that fails."""
+        if isinstance(message, protocol.HoldHead):
+            if self.pages.leads(page):
+                self._live.hold(message)
+            return
         if isinstance(message, protocol.PRESENCE):
             self.pages.present(page, message)
             return
@@ -308,6 +314,10 @@ class Session:
                     self._live.start(self._live_scene())
                 else:
                     self._live.stop()
+            case protocol.MoveHead():
+                self._live.move_head(message.motion)
+            case protocol.Blow():
+                self._live.blow(message.side)
             case protocol.Against():
                 self._playback.set_comparison(message)
             case protocol.Restore() if self.recovered:

@@ -58,7 +58,7 @@ export abstract class HandTool {
 
   /** Whether a pointer is for the tool; with Alt it turns the head. */
   private takes(event: PointerEvent): boolean {
-    return this.on && event.button === 0 && !event.altKey && !this.viewer.compared && this.model.role.leads;
+    return this.on && event.button === 0 && !event.altKey && !onButton(event) && !this.viewer.compared && this.model.role.leads;
   }
 
   /** The pointer is the tool's alone until it is lifted. */
@@ -71,6 +71,11 @@ export abstract class HandTool {
   protected get done(): HTMLElement {
     return h("button", { type: "button", class: "quiet", onclick: () => this.show(false) }, "Done");
   }
+}
+
+/** Whether a pointer is on a button over the picture. */
+export function onButton(event: PointerEvent): boolean {
+  return (event.target as Element).closest("button") !== null;
 }
 
 export function row(label: string, input: HTMLElement, more?: HTMLElement): HTMLElement {

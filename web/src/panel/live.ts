@@ -3,34 +3,59 @@
 import "./live.css";
 import { h, iconButton } from "../dom";
 import type { Model } from "../model";
-import type { LiveStep } from "../protocol";
+import type { Blow, LiveStep, MoveHead } from "../protocol";
 import { headOf, Rods } from "../view/rods";
 import { Vector3 } from "three";
 import type { Viewer } from "../view/viewer";
 import { bindKey, plainKey } from "./keys";
 
+const MOTIONS: [MoveHead["motion"], string, string][] = [
+  ["nod", "Nod", "Nod twice"],
+  ["turn", "Turn", "Turn to one side and to the other"],
+  ["shake", "Shake", "Shake the head"],
+  ["hop", "Hop", "Hop twice"],
+  ["walk", "Walk", "Walk, until it is pressed again"],
+  ["clip", "Clip", "Play the clip of the shot in a loop, until it is pressed again"],
+];
+const SIDES: [Blow["side"], string][] = [
+  ["", "no wind"],
+  ["left", "wind from the left"],
+  ["right", "wind from the right"],
+  ["front", "wind from the front"],
+  ["back", "wind from behind"],
+];
+
+const SAID_FOR = 6000; // [ms]
 const CAUTION = "Live: locks may pass through one another";
 
 export class LiveHair {
   readonly button = iconButton("live", "Live hair (L): it moves with the head", () => this.toggle());
   readonly line = h("div", { class: "live-line", role: "note", hidden: true });
   private readonly rate = h("output", { class: "rate", "aria-label": "Live steps a second" });
+  private readonly motions = MOTIONS.map(([motion, label, title]) =>
+    h("button", { type: "button", class: "quiet", title, "data-motion": motion, onclick: () => this.model.say({ kind: "move_head", motion }) }, label),
+  );
+  private readonly wind = h("select", { "aria-label": "Wind" }, ...SIDES.map(([side, label]) => h("option", { value: side }, label)));
   private readonly cut = h("span", { class: "cut-off", role: "status" });
   private rods: Rods | null = null;
   private step: LiveStep | null = null;
   /** When steps were seen in the last second [ms]. */
   private seen: number[] = [];
   private waiting = false;
+  private saying = 0;
 
   constructor(
     private readonly model: Model,
     private readonly viewer: Viewer,
   ) {
     this.button.setAttribute("aria-pressed", "false");
-    this.line.append(CAUTION, this.rate, this.cut);
+    this.line.append(h("div", { class: "motions", role: "group", "aria-label": "Motions" }, ...this.motions, this.wind), CAUTION, this.rate, this.cut);
+    this.wind.addEventListener("change", () => model.say({ kind: "blow", side: this.wind.value as Blow["side"] }));
     bindKey({ section: "View", keys: "L", does: "let hair move live, or put it at rest", on: plainKey("l"), run: () => this.toggle() });
     model.on("live", () => this.turned());
-    model.on("role", () => this.button.toggleAttribute("disabled", !model.role.leads));
+    model.on("role", () => {
+      for (const control of [this.button, ...this.motions, this.wind]) control.toggleAttribute("disabled", !model.role.leads);
+    });
     model.hear("rods", (message) => {
       this.rods = new Rods(message);
       this.step = null;
@@ -49,9 +74,17 @@ export class LiveHair {
     const { live } = this.model;
     this.button.setAttribute("aria-pressed", String(live.on));
     this.line.toggleAttribute("hidden", !live.on);
-    this.seen = [];
-    this.rate.textContent = live.fps ? "" : "is being prepared";
-    this.cut.textContent = "";
+    if (!live.fps) {
+      this.seen = [];
+      this.rate.textContent = "is being prepared";
+      this.cut.textContent = "";
+    } else if (!this.seen.length) this.rate.textContent = "";
+    for (const motion of this.motions) {
+      const { motion: name } = motion.dataset;
+      if (name === "walk" || name === "clip") motion.setAttribute("aria-pressed", String(live.goes_on.includes(name)));
+      if (name === "clip") motion.toggleAttribute("hidden", this.model.welcome?.mode !== "shot");
+    }
+    this.wind.value = live.wind;
     if (!live.on) this.rods = this.step = null;
     if (!this.step) this.viewer.putAtRest(); // a frame of a shot may be seen
   }
@@ -60,7 +93,7 @@ export class LiveHair {
   private take(step: LiveStep): void {
     if (!this.model.live.on || step.key !== this.rods?.message.key) return;
     this.step = step;
-    if (step.note) this.cut.textContent = step.note;
+    if (step.note) this.say(step.note);
     if (this.waiting) return;
     this.waiting = true;
     requestAnimationFrame(() => {
@@ -69,6 +102,13 @@ export class LiveHair {
       this.show();
       this.count();
     });
+  }
+
+  /** Says for a while what was cut off. */
+  private say(note: string): void {
+    this.cut.textContent = note;
+    clearTimeout(this.saying);
+    this.saying = window.setTimeout(() => (this.cut.textContent = ""), SAID_FOR);
   }
 
   private show(): void {

@@ -4,6 +4,7 @@ import "./lock.css";
 import { Vector3 } from "three";
 import { h, iconButton } from "../dom";
 import type { Model, Place } from "../model";
+import { onButton } from "./hand_tool";
 import { bindKey, plainKey } from "./keys";
 import type { Json } from "../protocol";
 import { inPlane, onScreen, pick } from "../view/pick";
@@ -253,7 +254,7 @@ export class LockTool {
     element.addEventListener(
       "pointerdown",
       (event) => {
-        if (!event.shiftKey || event.button !== 0 || this.busy() || !this.model.documents.recipe) return;
+        if (!event.shiftKey || event.button !== 0 || onButton(event) || this.busy() || !this.model.documents.recipe) return;
         event.stopPropagation();
         element.setPointerCapture(event.pointerId);
         path = [this.viewer.at(event)];

@@ -6,45 +6,15 @@ import math
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
-from ringlet import sim
-from ringlet.api.live import live_shot
 from ringlet.data.errors import UserError, failure
-from ringlet.groom import Groom
-from ringlet.live import Live
-from ringlet.shot import Shot
 from ringlet.viewer import protocol
+from ringlet.viewer.play.head import MOTIONS
+from ringlet.viewer.play.mover import Hand, LiveScene, Mover, rods_message, step_message
 from ringlet.viewer.publisher import Publisher
-from ringlet.viewer.show.display_groom import DisplayGroom
-from ringlet.viewer.show.scene import VisibleMesh
 from ringlet.viewer.wire import pack
 
 LOOK_AGAIN = 0.2  # time after which a session without pages looks for one [s]
-NECK = 0.02  # of the joint of the head below the lowest roots [m]
-
-
-@dataclass(frozen=True, eq=False)
-class LiveScene:
-    """What moves live.
-
-    shot: its material, forces and words of motion hold; None: the material by default
-    worn: what the hair wears
-    """
-
-    groom: Groom
-    shot: Shot | None
-    worn: list[VisibleMesh]
-
-    @classmethod
-    def of(cls, display: DisplayGroom, shot: Shot | None, bodies: list[VisibleMesh]) -> LiveScene:
-        """The scene of a displayed groom; raises UserError for hair that has no locks to move."""
-        if display.hairs is None or not len(display.groom.locks):
-            raise UserError("live: there are no locks to move; open a recipe, a shot or a groom with locks")
-        return cls(display.groom, shot, [body for body in bodies if body.worn is not None])
 
 
 class LiveHair:
@@ -66,6 +36,7 @@ class LiveHair:
         self._scene: LiveScene | None = None
         self._stopping = threading.Event()
         self._thread: threading.Thread | None = None
+        self._hand, self._state = Hand(), protocol.Live(on=False)
         self._key = 0
 
     @property
@@ -77,14 +48,42 @@ class LiveHair:
         """Lets a scene move, from rest."""
         if self.on:
             return
-        self._scene, self._stopping = scene, threading.Event()
-        self._publisher.publish("live", pack(protocol.Live(on=True)))
+        self._scene, self._hand, self._stopping = scene, Hand(), threading.Event()
         self._thread = threading.Thread(target=self._run, args=(scene, self._stopping), name="live", daemon=True)
+        self._publish(protocol.Live(on=True))
         self._thread.start()
 
     def show(self, scene: LiveScene) -> None:
         """Goes on with another scene, if hair moves live."""
         self._scene = scene
+
+    def hold(self, message: protocol.HoldHead) -> None:
+        """A hand holds the head in a pose, or lets go."""
+        self._hand.held = None if message.turn is None else (message.turn, message.shift)
+
+    def let_go(self) -> None:
+        """The hand that holds the head lets go."""
+        self._hand.held = None
+
+    def move_head(self, motion: str) -> None:
+        """Plays a motion of the head; one that goes on is stopped where it plays. Raises UserError for no clip."""
+        if not self.on:
+            return
+        if motion == "clip" and (self._scene is None or self._scene.shot is None):
+            raise UserError("live: there is no shot whose clip could play; open one")
+        self._hand.motions.put(motion)
+        if motion == "clip" or MOTIONS[motion].seconds == math.inf:
+            self._toggle(motion)
+
+    def _toggle(self, motion: str) -> None:
+        going = set(self._state.goes_on) ^ {motion}
+        self._publish(self._state.model_copy(update={"goes_on": sorted(going)}))
+
+    def blow(self, side: str) -> None:
+        """Lets wind blow from a side, or ends it."""
+        if self.on:
+            self._hand.side = side
+            self._publish(self._state.model_copy(update={"wind": side}))
 
     def stop(self, patience: float = 0.0) -> None:
         """Ends the motion. patience: how long to wait for the step in progress [s]"""
@@ -95,7 +94,25 @@ class LiveHair:
             self._thread.join(patience)
         self._thread = None
         self._publisher.clear("live")
-        self._publisher.publish("live", pack(protocol.Live(on=False)))
+        self._publish(protocol.Live(on=False))
+
+    def _publish(self, state: protocol.Live) -> None:
+        self._state = state
+        self._publisher.publish("live", pack(state))
+
+    def _prepared(self, stopping: threading.Event, fps: float) -> None:
+        if stopping is self._stopping and self.on:
+            self._publish(self._state.model_copy(update={"fps": fps}))
+
+    def _announce(self, stopping: threading.Event, rods: bytes) -> None:
+        if stopping is self._stopping and self.on:
+            self._publisher.publish("live/rods", rods)
+
+    def _end(self, stopping: threading.Event) -> None:
+        if stopping is self._stopping:
+            self.stop()
+
+    # On the thread of the motion
 
     def _run(self, scene: LiveScene, stopping: threading.Event) -> None:
         try:
@@ -105,81 +122,33 @@ class LiveHair:
                 self._call(self._failed, failure("hair could not move live", error))
                 self._call(self._end, stopping)
 
-    def _end(self, stopping: threading.Event) -> None:
-        if stopping is self._stopping:
-            self.stop()
-
     def _move(self, scene: LiveScene, stopping: threading.Event) -> None:
-        live = live_shot(scene.shot, scene.groom) if scene.shot is not None else Live(scene.groom)
-        key, step, due = self._announce(scene, live, stopping), 0, time.monotonic()
-        self._call(self._publish, stopping, "live", pack(protocol.Live(on=True, fps=1.0 / live.dt)))
+        mover, hand = Mover(scene, self._no_clip), self._hand
+        dt = mover.live.dt
+        key = self._send_rods(mover, stopping)
+        self._call(self._prepared, stopping, 1.0 / dt)
+        step, late, due = 0, 0, time.monotonic()
         while not stopping.is_set():
             if not self._watched():
                 stopping.wait(LOOK_AGAIN)
                 due = time.monotonic()
                 continue
-            if self._scene is not None and self._scene is not scene:
-                before, scene = scene, self._scene
-                if _change(live, before, scene):
-                    key = self._announce(scene, live, stopping)
-            note = live.step()
+            if self._scene is not None and mover.change(self._scene):
+                key = self._send_rods(mover, stopping)
+            note = mover.step(hand, (1 + late) * dt)
             if not stopping.is_set():
-                self._publisher.send("live/step", step_message(key, step, scene, live, note))
-            late = max(0, math.floor((time.monotonic() - due) / live.dt))  # steps to leave out, so that time goes on
-            step, due = step + 1 + late, due + (1 + late) * live.dt
+                self._publisher.send("live/step", step_message(key, step, mover, note))
+            late = max(0, math.floor((time.monotonic() - due) / dt))  # steps to leave out, so that time goes on
+            step, due = step + 1 + late, due + (1 + late) * dt
             stopping.wait(max(0.0, due - time.monotonic()))
 
-    def _announce(self, scene: LiveScene, live: Live, stopping: threading.Event) -> int:
+    def _no_clip(self, why: str) -> None:
+        """The clip cannot be read: it does not play."""
+        self._call(self._failed, why)
+        self._call(self._toggle, "clip")
+
+    def _send_rods(self, mover: Mover, stopping: threading.Event) -> int:
         """Tells pages which rods follow; returns their key."""
         self._key += 1
-        self._call(self._publish, stopping, "live/rods", rods_message(self._key, scene.groom, live))
+        self._call(self._announce, stopping, rods_message(self._key, mover))
         return self._key
-
-    def _publish(self, stopping: threading.Event, subject: str, message: bytes) -> None:
-        if stopping is self._stopping and not stopping.is_set():
-            self._publisher.publish(subject, message)
-
-
-def _change(live: Live, before: LiveScene, now: LiveScene) -> bool:
-    """Lets hair go on in another scene; returns whether its rods are others."""
-    other = now.groom is not before.groom
-    if other:
-        live.groom = now.groom if now.shot is None else sim.with_words(now.shot, now.groom)
-    if now.shot is not None and now.shot is not before.shot:
-        live.material, live.gravity, live.wind = now.shot.strands, now.shot.forces.gravity, now.shot.forces.wind
-    return other
-
-
-def rods_message(key: int, groom: Groom, live: Live) -> bytes:
-    """Message with the rods of a groom as groomed."""
-    roots = groom.locks.points[groom.locks.offsets[:-1]] - groom.origin
-    pivot = 0.5 * (roots.min(axis=0) + roots.max(axis=0))
-    pivot[1] = roots[:, 1].min() - NECK
-    return pack(
-        protocol.Rods(key=key, pivot=tuple(pivot.tolist())),
-        points=live.groomed_rods - groom.origin,
-        along=live.vertex_places,
-        axis=live.axes,
-        carrier=live.carriers,
-    )
-
-
-def step_message(key: int, step: int, scene: LiveScene, live: Live, note: str) -> bytes:
-    """Message with the rods as they are now."""
-    origin, worn = scene.groom.origin, np.empty((0, 3))
-    if scene.worn:
-        points = live.positions
-        worn = np.concatenate([body.worn[0].at(body.worn[1], points) for body in scene.worn if body.worn]) - origin
-    head = relative(live.head, origin)
-    return pack(
-        protocol.LiveStep(key=key, step=step, head=head[:3].ravel().tolist(), trunk=(0.0, 0.0, 0.0), note=note),
-        points=live.rods - origin,
-        worn=worn,
-    )
-
-
-def relative(motion: NDArray[np.float64], origin: NDArray[np.float64]) -> NDArray[np.float64]:
-    """A rigid motion, shape (4, 4), for positions relative to an origin [m]."""
-    moved = motion.copy()
-    moved[:3, 3] += motion[:3, :3] @ origin - origin
-    return moved

@@ -54,7 +54,7 @@ from ringlet.viewer.protocol.groom import (
     Numbers,
 )
 from ringlet.viewer.protocol.lights import Lamp, Rig
-from ringlet.viewer.protocol.live import GoLive, Live, LiveStep, Rods
+from ringlet.viewer.protocol.live import Blow, GoLive, HoldHead, Live, LiveStep, MoveHead, Rods
 from ringlet.viewer.protocol.message import (
     VERSION,
     Arranged,
@@ -180,6 +180,7 @@ __all__ = [
     "Arrange",
     "Arranged",
     "AskMotion",
+    "Blow",
     "Body",
     "Cameras",
     "Cancel",
@@ -210,6 +211,7 @@ __all__ = [
     "Hand",
     "Heard",
     "Hello",
+    "HoldHead",
     "Introduce",
     "Isolate",
     "Keep",
@@ -226,6 +228,7 @@ __all__ = [
     "Look",
     "Measured",
     "Message",
+    "MoveHead",
     "Mute",
     "Names",
     "Note",

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, TypeAdapter
 
 from ringlet.data import limits
-from ringlet.viewer.protocol.live import GoLive
+from ringlet.viewer.protocol.live import Blow, GoLive, HoldHead, MoveHead
 from ringlet.viewer.protocol.message import (
     Coordinate,
     File,
@@ -354,10 +354,13 @@ FromPage = Annotated[
     | AskMotion
     | Watch
     | GoLive
+    | HoldHead
+    | MoveHead
+    | Blow
     | ReviewMessage,
     Field(discriminator="kind"),
 ]
 FROM_PAGE: TypeAdapter[FromPage] = TypeAdapter(FromPage)
 
 # Messages of presence: the latest of each counts, so that they are neither acknowledged nor sent again.
-PRESENCE = (Introduce, Point, Look)
+PRESENCE = (Introduce, Point, Look, HoldHead)

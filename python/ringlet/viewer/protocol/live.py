@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
-from ringlet.viewer.protocol.message import Message, Point
+from pydantic import Field
+
+from ringlet.viewer.protocol.message import Message, Point, Position
+
+Angle = Annotated[float, Field(ge=-10.0, le=10.0)]  # [rad]
 
 
 class GoLive(Message):
@@ -14,12 +18,45 @@ class GoLive(Message):
     on: bool
 
 
+class HoldHead(Message):
+    """A hand holds the head of live hair, or lets go.
+
+    turn: rotation vector from where it was groomed [rad]; None to let go
+    shift: of all of the body [m]
+    """
+
+    kind: Literal["hold_head"] = "hold_head"
+    turn: tuple[Angle, Angle, Angle] | None
+    shift: Position = (0.0, 0.0, 0.0)
+
+
+class MoveHead(Message):
+    """Plays a motion of the head of live hair; ``walk`` and ``clip``, that of the shot, stop where they play."""
+
+    kind: Literal["move_head"] = "move_head"
+    motion: Literal["nod", "turn", "shake", "hop", "walk", "clip"]
+
+
+class Blow(Message):
+    """Lets wind blow from a side of the head, or ends it."""
+
+    kind: Literal["blow"] = "blow"
+    side: Literal["", "left", "right", "front", "back"]
+
+
 class Live(Message):
-    """Whether hair moves live. fps: steps a second; 0 while the first one is being prepared."""
+    """Whether hair moves live.
+
+    fps:   steps a second; 0 while the first one is being prepared
+    goes_on: motions that play until they are stopped
+    wind:  side that it blows from; empty for none
+    """
 
     kind: Literal["live"] = "live"
     on: bool
     fps: float = 0.0
+    goes_on: list[str] = Field(default_factory=list)
+    wind: str = ""
 
 
 class Rods(Message):

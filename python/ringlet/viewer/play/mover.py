@@ -1,0 +1,171 @@
+"""Live hair of a scene with its head and the wind, and the messages that show it."""
+
+from __future__ import annotations
+
+import math
+import queue
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ringlet import sim
+from ringlet.api.live import head_motion, live_shot
+from ringlet.data.errors import UserError
+from ringlet.groom import Groom
+from ringlet.live import Live
+from ringlet.shot import Shot
+from ringlet.viewer import protocol
+from ringlet.viewer.play.head import MOTIONS, Head, clip_motion
+from ringlet.viewer.show.display_groom import DisplayGroom
+from ringlet.viewer.show.scene import VisibleMesh
+from ringlet.viewer.wire import pack
+
+NECK = 1.0  # height below the roots in which the neck is looked for, relative to the width of what they cover
+SLICE = 0.01  # height of the slices [m]
+
+WIND = 6.0  # speed of the wind of a side [m/s]
+GUSTS, GUST_PERIOD = 0.4, 1.3  # how far its speed changes, relative to it, and in which time [s]
+WIND_RISE = 0.2  # time in which it rises to 1 − 1/e [s]
+SIDES = {"": (0, 0, 0), "left": (1, 0, 0), "right": (-1, 0, 0), "front": (0, 0, 1), "back": (0, 0, -1)}  # of the head
+
+Vector = tuple[float, float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class LiveScene:
+    """What moves live.
+
+    shot: its material, forces and words of motion hold; None: the material by default
+    worn: what the hair wears
+    """
+
+    groom: Groom
+    shot: Shot | None
+    worn: list[VisibleMesh]
+
+    @classmethod
+    def of(cls, display: DisplayGroom, shot: Shot | None, bodies: list[VisibleMesh]) -> LiveScene:
+        """The scene of a displayed groom; raises UserError for hair that has no locks to move."""
+        if display.hairs is None or not len(display.groom.locks):
+            raise UserError("live: there are no locks to move; open a recipe, a shot or a groom with locks")
+        return cls(display.groom, shot, [body for body in bodies if body.worn is not None])
+
+
+@dataclass
+class Hand:
+    """What is done to live hair, on one thread, until the next step takes it over on another.
+
+    held:    pose in which a hand has the head: rotation vector [rad] and shift [m]; None: it has let go
+    motions: names of those that were asked for since the last step
+    side:    that wind blows from; empty for none
+    """
+
+    held: tuple[Vector, Vector] | None = None
+    motions: queue.SimpleQueue[str] = field(default_factory=queue.SimpleQueue)
+    side: str = ""
+
+
+class Mover:
+    """Live hair of a scene with its head.
+
+    failed: hears of a clip that cannot be read
+    """
+
+    def __init__(self, scene: LiveScene, failed: Callable[[str], None]) -> None:
+        self.scene, self._failed = scene, failed
+        self.live = live = live_shot(scene.shot, scene.groom) if scene.shot is not None else Live(scene.groom)
+        self.head = Head(neck(scene.groom))
+        self._gust, self._time, self._wind = np.zeros(3), 0.0, np.array(live.wind)
+
+    def change(self, now: LiveScene) -> bool:
+        """Goes on with what is new in a scene; returns whether its rods are others."""
+        live, before, self.scene = self.live, self.scene, now
+        other = now.groom is not before.groom
+        if other:
+            live.groom = now.groom if now.shot is None else sim.with_words(now.shot, now.groom)
+        if now.shot is not None and now.shot is not before.shot:
+            live.material, live.gravity = now.shot.strands, now.shot.forces.gravity
+            self._wind = np.array(now.shot.forces.wind)
+        return other
+
+    def step(self, hand: Hand, seconds: float) -> str:
+        """Takes over what the hand does, and steps once after some time; returns what was cut off."""
+        while not hand.motions.empty():
+            self._play(hand.motions.get())
+        if (held := hand.held) is not None:
+            self.head.hold(np.array(held[0]), np.array(held[1]))
+        else:
+            self.head.let_go()
+        self.head.advance(seconds)
+        self._time += seconds
+        blows = np.array(SIDES[hand.side]) * -WIND * (1.0 + GUSTS * math.sin(2.0 * math.pi * self._time / GUST_PERIOD))
+        self._gust += (1.0 - math.exp(-seconds / WIND_RISE)) * (blows - self._gust)
+        self.live.wind = tuple((self._wind + self._gust).tolist())
+        self.live.head = self.head.transform
+        return self.live.step()
+
+    def _play(self, name: str) -> None:
+        groom, shot = self.scene.groom, self.scene.shot
+        if name in MOTIONS:
+            self.head.play(name, MOTIONS[name])
+        elif shot is not None:
+            try:
+                transforms = head_motion(groom, shot.frames)
+            except UserError as error:
+                self._failed(str(error))
+            else:
+                self.head.play(name, clip_motion(transforms, self.head.pivot, groom.space.fps))
+
+
+def neck(groom: Groom) -> NDArray[np.float64]:
+    """Where a head turns on its neck: in the first narrow slice of its mesh below the roots [m], shape (3,)."""
+    roots, points = (
+        np.asarray(of, np.float64) for of in (groom.locks.points[groom.locks.offsets[:-1]], groom.scalp.points)
+    )
+    low, high = roots.min(axis=0), roots.max(axis=0)
+    below = points[(points[:, 1] < low[1]) & (points[:, 1] > low[1] - NECK * (high[0] - low[0]))]
+    if not len(below):
+        return np.array([0.5 * (low[0] + high[0]), low[1], 0.5 * (low[2] + high[2])])
+    slices = np.floor(below[:, 1] / SLICE)
+    each = [below[slices == number] for number in np.unique(slices)[::-1]]  # from above
+    sizes = np.array([np.ptp(of[:, 0]) * np.ptp(of[:, 2]) for of in each])
+    near = [sizes[max(k - 2, 0) : k + 3].min() for k in range(len(sizes))]
+    narrow = each[int(np.argmax(sizes <= near))]
+    return 0.5 * (narrow.min(axis=0) + narrow.max(axis=0))
+
+
+def rods_message(key: int, mover: Mover) -> bytes:
+    """Message with the rods of a groom as groomed."""
+    live, origin = mover.live, mover.scene.groom.origin
+    return pack(
+        protocol.Rods(key=key, pivot=tuple((mover.head.pivot - origin).tolist())),
+        points=live.groomed_rods - origin,
+        along=live.vertex_places,
+        axis=live.axes,
+        carrier=live.carriers,
+    )
+
+
+def step_message(key: int, step: int, mover: Mover, note: str) -> bytes:
+    """Message with the rods as they are now."""
+    live, origin = mover.live, mover.scene.groom.origin
+    worn = [body.worn for body in mover.scene.worn if body.worn is not None]
+    places = np.empty((0, 3))
+    if worn:
+        points = live.positions
+        places = np.concatenate([accessory.at(rest, points) for accessory, rest in worn]) - origin
+    head = relative(live.head, origin)[:3].ravel().tolist()
+    return pack(
+        protocol.LiveStep(key=key, step=step, head=head, trunk=tuple(mover.head.trunk.tolist()), note=note),
+        points=live.rods - origin,
+        worn=places,
+    )
+
+
+def relative(motion: NDArray[np.float64], origin: NDArray[np.float64]) -> NDArray[np.float64]:
+    """A rigid motion, shape (4, 4), for positions relative to an origin [m]."""
+    moved = motion.copy()
+    moved[:3, 3] += motion[:3, :3] @ origin - origin
+    return moved
