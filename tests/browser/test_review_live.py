@@ -39,3 +39,31 @@ def test_the_card_carries_hairs_by_their_rods_and_puts_them_back(opened: Any) ->
     review.until("!ringlet.model.live.on")
     assert np.array_equal(hairs(review), rest)
     assert not review.errors
+
+
+def test_another_groom_begins_where_the_hair_is_seen(opened: Any) -> None:
+    review: Review = opened(pixels=0.1)
+    review.page.keyboard.press("l")
+    review.until("ringlet.live.step")
+    review.get("(() => { const t = performance.now(); performance.now = () => t; ringlet.live.take = () => {}; })()")
+    before = hairs(review)
+    review.get(
+        """(() => {
+            const { locks } = ringlet.viewer.hair.a, { offsets } = locks;
+            const points = locks.points.slice();
+            for (let lock = 0; lock + 1 < offsets.length; lock++)
+                for (let i = offsets[lock]; i < offsets[lock + 1]; i++)
+                    points[3 * i] += (0.006 * (i - offsets[lock])) / (offsets[lock + 1] - offsets[lock]);
+            ringlet.model.take({ ...locks, points });
+        })()"""
+    )
+    first = hairs(review)
+    review.get("(() => { const t = performance.now() + 2000; performance.now = () => t; ringlet.live.show(); })()")
+    now = hairs(review)
+    assert np.abs(now - before).max() > 4e-3
+    assert (
+        np.abs(first - before).mean() < 0.15 * np.abs(now - before).mean()
+    )  # about their lock as in the new
+    review.get("ringlet.viewer.putAtRest()")
+    assert np.abs(hairs(review) - now).max() < 2e-6
+    assert not review.errors

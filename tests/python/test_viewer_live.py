@@ -296,3 +296,34 @@ def test_without_a_shot_no_clip_plays(folder: Path) -> None:
         leader.receive("live_step")
         leader.send(kind="move_head", motion="clip")
         assert trouble(leader) == "live: there is no shot whose clip could play; open one"
+
+
+def test_sliders_of_a_shot_act_at_the_next_step(folder: Path) -> None:
+    groom, shot = ringlet.build_groom(folder / "small.recipe.toml"), ringlet.read_shot(folder / "small.shot.toml")
+    mover, hand = Mover(LiveScene(groom, shot, []), print), Hand(((0.0, 0.4, 0.0), (0.0, 0.0, 0.0)))
+    mover.step(hand, STEP)
+    before = mover.live.positions
+    strands = shot.strands.model_copy(update={"bend_scale": 7.0})
+    forces = shot.forces.model_copy(update={"gravity": (0.0, 9.81, 0.0), "wind": (3.0, 0.0, 0.0)})
+    stiffer = shot.model_copy(update={"strands": strands, "forces": forces})
+    assert not mover.change(LiveScene(groom, stiffer, []))  # the rods are the same
+    assert mover.live.positions == pytest.approx(before, abs=0.0)
+    mover.step(hand, STEP)
+    assert mover.live.material.bend_scale == 7.0
+    assert mover.live.gravity == (0.0, 9.81, 0.0)
+    assert mover.live.wind == (3.0, 0.0, 0.0)
+    assert mover.change(LiveScene(replace(groom, locks=groom.locks.take(np.arange(4))), stiffer, []))
+    assert len(mover.live.rods) == 4
+
+
+def test_a_slider_of_a_shot_reaches_live_hair(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    scenes: list[LiveScene] = []
+    change = Mover.change
+    monkeypatch.setattr(Mover, "change", lambda self, scene: scenes.append(scene) or change(self, scene))
+    with serving(folder, "small.shot.toml") as client, page(client) as leader:
+        leader.receive("measured")
+        leader.send(kind="go_live", on=True)
+        leader.receive("live_step")
+        leader.send(kind="set", file="shot", changes=[[["strands", "bend_scale"], 5.0]], gesture=1)
+        while not scenes or scenes[-1].shot is None or scenes[-1].shot.strands.bend_scale != 5.0:
+            leader.receive("live_step")

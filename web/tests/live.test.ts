@@ -3,6 +3,7 @@
 import { expect, test, vi } from "vitest";
 import { Matrix4 } from "three";
 import type { Live, LiveStep, Rods as RodsMessage } from "../src/protocol";
+import { easeFrom, seen, shareLeft } from "../src/view/ease";
 import { Rods } from "../src/view/rods";
 import { choose, control, drag, find, press } from "./controls";
 import { open, type Page } from "./page";
@@ -190,4 +191,29 @@ test("a pointer that is gone, and a page that no longer leads, let go", async ()
     end();
     expect(page.last("hold_head").turn).toBe(null);
   }
+});
+
+/** Locks of three points on their rods, carried by a motion. */
+function carried(count: number, motion: Matrix4, wide: number) {
+  const message = rodsOf(count);
+  const points = Float32Array.from({ length: 9 * count }, (_, i) => wide * Math.sin(1 + i));
+  const rods = new Rods(message);
+  const locks = { ids: Float64Array.from({ length: count }, (_, k) => 10 + k), offsets: Int32Array.from({ length: count + 1 }, (_, k) => 3 * k) };
+  return { locks, points, rods, motions: rods.motions(moved(message.points, motion), motion) };
+}
+
+test("hair goes on from where it is seen when groom and rods change, and new locks begin at rest", () => {
+  const [before, now] = [carried(2, TURN, 0.1), carried(3, new Matrix4().makeRotationX(-0.3), 0.15)];
+  const places = seen(before, null, 0);
+  moved(before.points, TURN).forEach((value, i) => expect(places[i]).toBeCloseTo(value, 5));
+  const ease = easeFrom(before.locks, places, now);
+  const first = seen(now, ease, 1);
+  places.forEach((value, i) => expect(first[i]).toBeCloseTo(value, 5));
+  expect(ease.slice(18)).toEqual(new Float32Array(9));
+  seen(now, ease, 0).forEach((value, i) => expect(value).toBeCloseTo(seen(now, null, 0)[i], 6));
+  const halved = { ids: before.locks.ids, offsets: Int32Array.from([0, 2, 4]) }; // of two points: the middle lies between them
+  const ends = new Float32Array([...places.slice(0, 3), ...places.slice(6, 9), ...places.slice(9, 12), ...places.slice(15, 18)]);
+  const resampled = seen(now, easeFrom(halved, ends, now), 1);
+  for (let c = 0; c < 3; c++) expect(resampled[3 + c]).toBeCloseTo(0.5 * (places[c] + places[6 + c]), 5);
+  expect([shareLeft(0), shareLeft(1)]).toEqual([1, 0]);
 });

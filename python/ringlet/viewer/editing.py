@@ -36,11 +36,14 @@ class Editing:
 
     A gesture gets drafts until its hand rests, or no more is heard of it. Methods run on the session's thread.
 
-    submit: runs a call on that thread
+    submit:  runs a call on that thread
+    changed: called there after the shot has changed
     """
 
-    def __init__(self, publisher: Publisher, pages: Pages, submit: Callable[..., Any]) -> None:
-        self._publisher, self._pages = publisher, pages
+    def __init__(
+        self, publisher: Publisher, pages: Pages, submit: Callable[..., Any], changed: Callable[[], None]
+    ) -> None:
+        self._publisher, self._pages, self._changed = publisher, pages, changed
         self._rest = Timer(REST_AFTER, submit)
 
     def open(
@@ -146,6 +149,7 @@ class Editing:
                 self._comparer.recompute()
         else:
             self._playback.publish_timeline()
+            self._changed()
         if resting:
             self._rest.cancel()
         else:  # the hand may never be heard to rest

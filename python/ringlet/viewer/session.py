@@ -74,7 +74,7 @@ class Session:
         self._rendering, self._sharer = Rendering(project), Sharer(project)
         self._motions = LockMotions()
         self._live = LiveHair(self.publisher, self._call, trouble, lambda: len(self.pages) > 0)
-        self._editing = Editing(self.publisher, self.pages, self.submit)
+        self._editing = Editing(self.publisher, self.pages, self.submit, self._show_live)
         self._disk = DiskChanges(
             project, self.publisher, self.problems, self._review, self._call, self._editing.edited, notice, self._record
         )

@@ -48,6 +48,8 @@ uniform bool live;                    // whether rods carry the hair
 uniform highp sampler2D rodMotion;    // motions of their vertices: three texels each
 uniform float along[MOST_VERTICES];   // places of the vertices of a rod on a lock
 uniform int vertices;
+uniform highp sampler2D lockEase;     // how far points of locks are seen from rest after a change
+uniform float easing;                 // the share of it that is left
 out vec4 result;
 
 vec2 knot(highp sampler2D values, int hair, int i) {
@@ -69,6 +71,10 @@ vec3 curl(int row, float t, vec4 turned) {
   return (turned.z + turned.x * u.w - turned.y * v.w) * u.xyz + (turned.w + turned.y * u.w + turned.x * v.w) * v.xyz;
 }
 
+vec3 eased(int row, float t) {
+  return easing > 0.0 ? easing * mix(lookup(lockEase, row).xyz, lookup(lockEase, row + 1).xyz, t) : vec3(0.0);
+}
+
 // A place on a lock at so many points from its root. Catmull–Rom for the points, straight for the frame.
 vec3 onLock(vec4 lock, float at, vec2 across, vec4 turned) {
   int last = int(lock.y), j = min(int(at), last), row = int(lock.x) + j;
@@ -78,14 +84,14 @@ vec3 onLock(vec4 lock, float at, vec2 across, vec4 turned) {
   vec3 on = p1 + 0.5 * t * ((p2 - p0) + t * ((2.0 * p0 - 5.0 * p1 + 4.0 * p2 - p3) + t * (3.0 * (p1 - p2) + p3 - p0)));
   vec3 a = mix(lookup(lockA, row).xyz, lookup(lockA, row + 1).xyz, t);
   vec3 b = mix(lookup(lockB, row).xyz, lookup(lockB, row + 1).xyz, t);
-  vec3 place = on + across.x * a + across.y * b;
+  vec3 place = on + across.x * a + across.y * b + eased(row, t);
   return curled ? place + curl(row, t, turned) : place;
 }
 
 // The same on the polyline of the lock, which touches nothing.
 vec3 onPolyline(vec4 lock, float at) {
   int j = min(int(at), int(lock.y) - 1), row = int(lock.x) + j;
-  return mix(lookup(lockPoint, row).xyz, lookup(lockPoint, row + 1).xyz, at - float(j));
+  return mix(lookup(lockPoint, row).xyz, lookup(lockPoint, row + 1).xyz, at - float(j)) + eased(row, at - float(j));
 }
 
 // A place of hair at a fraction of a lock, where the rod has carried it: as in src/ringlet/live/carried_locks.h.
@@ -177,6 +183,7 @@ export class Carry {
         live: { value: false },
         along: { value: new Float32Array(MOST_VERTICES) },
         vertices: { value: 2 },
+        easing: { value: 0 },
       },
     });
     this.scene.add(new Mesh(new PlaneGeometry(2, 2), this.material));
@@ -198,6 +205,7 @@ export class Carry {
     this.put("ramps", ramps);
     this.setRoots(hairs.root);
     this.put("rodMotion", new Float32Array(4));
+    this.put("lockEase", new Float32Array(4));
   }
 
   /** Mean diameter of the hairs at their thickest [m]. */
@@ -263,6 +271,12 @@ export class Carry {
     (uniforms["along"].value as Float32Array).set(along);
     uniforms["vertices"].value = along.length;
     this.put("rodMotion", motions);
+  }
+
+  /** How far points of locks are seen from rest, in rows as those of the table, and the share of it that is left. */
+  setEase(rows: Float32Array | null, share: number): void {
+    if (rows) this.put("lockEase", rows);
+    this.material.uniforms["easing"].value = share;
   }
 
   /** All hairs are to be carried again. */

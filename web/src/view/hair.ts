@@ -16,6 +16,7 @@ import {
 import type { Colors, Frame, Hairs, Locks } from "../protocol";
 import { Carry } from "./carry";
 import { Density } from "./density";
+import { type Carried, easeFrom, seen, shareLeft } from "./ease";
 import { FiberTable, type Roughness, type Transport, variances } from "./fiber";
 import {
   DEFERRED_FRAGMENT,
@@ -64,6 +65,8 @@ export class Hair {
   private carrying: { rods: Rods; points: Float32Array; head: Matrix4 } | null = null;
   /** Motions of the vertices of rods that carry the hair; null: none do. */
   motions: Float32Array | null = null;
+  /** How far points of locks were seen from rest when something changed, and when that was [ms]. */
+  private ease: { from: Float32Array; since: number } | null = null;
   private carry: Carry | null = null;
   private geometry = new InstancedBufferGeometry();
   private readonly shared: Uniforms;
@@ -164,13 +167,52 @@ export class Hair {
     this.material.uniforms["hairs"].value = hairs.count;
     this.setStride(this.stride, true);
     this.recolour();
-    if (this.locks) this.setLocks(this.locks);
+    if (this.locks) this.place(this.locks);
+    this.showEase(true);
     this.moved();
   }
 
   setLocks(locks: Locks): void {
-    this.locks = locks;
-    this.place(locks);
+    this.goOn(() => {
+      this.locks = locks;
+      this.place(locks);
+    });
+  }
+
+  /** Changes what places the hair; while rods carry it, it goes on from where it is seen. */
+  private goOn(change: () => void): void {
+    const before = this.carried;
+    const places = before && seen(before, this.ease?.from ?? null, this.shareLeft);
+    change();
+    const now = this.carried;
+    this.ease = before && places && now ? { from: easeFrom(before.locks, places, now), since: performance.now() } : null;
+    this.showEase(true);
+  }
+
+  /** What places the hair that rods carry. */
+  private get carried(): Carried | null {
+    const { locks, placed: points, carrying, motions } = this;
+    return locks && points && carrying && motions ? { locks, points, rods: carrying.rods, motions } : null;
+  }
+
+  /** The share that is left of how far hair was seen from rest. */
+  private get shareLeft(): number {
+    return this.ease ? shareLeft((performance.now() - this.ease.since) / 1000) : 0;
+  }
+
+  /** Hands on how far hair is seen from rest; anew: after a change */
+  private showEase(anew: boolean): void {
+    const { ease, carry, locks, table, shareLeft } = this;
+    if (!carry || !table || !locks) return;
+    if (!shareLeft) this.ease = null;
+    let rows: Float32Array | null = null;
+    if (anew && ease) {
+      rows = new Float32Array(4 * table.rows);
+      for (let lock = 0; lock + 1 < locks.offsets.length; lock++)
+        for (let i = locks.offsets[lock]; i < locks.offsets[lock + 1]; i++)
+          rows.set(ease.from.subarray(3 * i, 3 * i + 3), 4 * (i + 3 * lock + 1));
+    }
+    carry.setEase(rows, shareLeft);
   }
 
   /** Puts the hair where it is, at rest or in a frame. */
@@ -192,8 +234,14 @@ export class Hair {
   carryBy(rods: Rods | null, points: Float32Array = new Float32Array(), head?: Matrix4): void {
     const fits = rods !== null && head !== undefined && rods.message.carrier.length === this.locks?.ids.length;
     if (!fits && !this.carrying) return;
-    this.carrying = fits ? { rods, points, head } : null;
-    this.follow();
+    const carrying = fits ? { rods, points, head } : null;
+    const follow = () => {
+      this.carrying = carrying;
+      this.follow();
+    };
+    if (this.carrying && carrying?.rods !== this.carrying.rods) this.goOn(follow);
+    else follow();
+    this.showEase(false);
     this.moved();
   }
 

@@ -83,11 +83,12 @@ class Mover:
         """Goes on with what is new in a scene; returns whether its rods are others."""
         live, before, self.scene = self.live, self.scene, now
         other = now.groom is not before.groom
-        if other:
-            live.groom = now.groom if now.shot is None else sim.with_words(now.shot, now.groom)
-        if now.shot is not None and now.shot is not before.shot:
+        if now.shot is not None and before.shot is not None and now.shot is not before.shot:
             live.material, live.gravity = now.shot.strands, now.shot.forces.gravity
             self._wind = np.array(now.shot.forces.wind)
+            other = other or bool(now.shot.motion.given or before.shot.motion.given)  # its words are factors of locks
+        if other:
+            live.groom = now.groom if now.shot is None else sim.with_words(now.shot, now.groom)
         return other
 
     def step(self, hand: Hand, seconds: float) -> str:
