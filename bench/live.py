@@ -52,7 +52,7 @@ def run(
         "live",
         {"recipe": recipe, "locks": locks, "frames": frames, "newton": newton, "seconds": seconds},
         per="step",
-        warm_up=2,
+        warm_up=0,
         locks=len(groom.locks),
         vertices=len(groom.locks.points),
         **measured,

@@ -61,9 +61,7 @@ def test_another_groom_begins_where_the_hair_is_seen(opened: Any) -> None:
     review.get("(() => { const t = performance.now() + 2000; performance.now = () => t; ringlet.live.show(); })()")
     now = hairs(review)
     assert np.abs(now - before).max() > 4e-3
-    assert (
-        np.abs(first - before).mean() < 0.15 * np.abs(now - before).mean()
-    )  # about their lock as in the new
+    assert np.abs(first - before).mean() < 0.15 * np.abs(now - before).mean()  # about their lock as in the new
     review.get("ringlet.viewer.putAtRest()")
     assert np.abs(hairs(review) - now).max() < 2e-6
     assert not review.errors

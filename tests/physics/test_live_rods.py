@@ -96,3 +96,12 @@ def test_what_contact_adds_is_bend_stiffness_of_the_wire() -> None:
     scaled = rod_of(curves, MATERIAL.model_copy(update={"bend_scale": 3.5}))
     for one, other in zip(stiffer.stiffness, scaled.stiffness, strict=True):
         assert one == pytest.approx(other)
+
+
+def test_neighbours_hold_a_lock_only_where_it_has_some() -> None:
+    lock, count = np.asarray(coil(7).points), 25
+    for spacing, least, most in ((2.0 * RADIUS, 0.9, 1.0), (40.0 * RADIUS, 0.0, 0.02)):
+        away = spacing * np.stack(np.divmod(np.arange(count), 5), axis=1)
+        crowd = Curves.from_list([lock + [x, 0.0, z] for x, z in away])
+        assert least <= np.median(Rods.of(crowd).crowding()) <= most
+    assert Rods.of(coil(7)).crowding() == pytest.approx(0.0)

@@ -117,9 +117,9 @@ def test_hair_goes_on_from_where_it_is_to_another_groom(groom: Groom) -> None:
     assert live.positions == pytest.approx(before, abs=1e-9)
     live.step()
     assert np.abs(live.positions - before).max() < 0.02
-    for _ in range(72):
+    for _ in range(120):
         live.step()
-    assert live.positions == pytest.approx(np.asarray(wider.locks.points) @ live.head[:3, :3].T, abs=1e-3)
+    assert live.positions == pytest.approx(np.asarray(wider.locks.points) @ live.head[:3, :3].T, abs=2e-3)
 
 
 def test_locks_that_are_new_begin_as_groomed(groom: Groom) -> None:
@@ -192,3 +192,44 @@ def test_distances_of_a_grid_are_those_to_the_mesh(groom: Groom) -> None:
         within = near & (np.linalg.norm(gradients, axis=1) > 0.9)
         assert slope[within] == pytest.approx(gradients[within, k], abs=0.12)
     assert np.isinf(grid.at(np.array([[1.0, 0.0, 0.0]]))[0][0])
+
+
+def test_a_head_that_is_dragged_keeps_its_hair_outside(groom: Groom) -> None:
+    """At 1.5 m/s, to and fro at once: at most 0.5 % of points are inside, and none is stuck a second later."""
+    live, scalp = Live(groom), groom.scalp
+    solid = _core.Solid(np.ascontiguousarray(scalp.points, np.float64), scalp.triangles)
+    head, inside, at = np.eye(4), [], 0.0
+    for k in range(48):
+        at += live.dt * (1.5 if k // 8 % 2 == 0 else -1.5)
+        head[0, 3] = at
+        live.head = head
+        assert live.step() == ""
+        inside.append(np.mean(solid.above(live.positions - head[:3, 3])[0] < -1e-3))
+    assert max(inside) <= 0.005
+    for _ in range(24):
+        live.step()
+    assert live.positions - head[:3, 3] == pytest.approx(np.asarray(groom.locks.points, np.float64), abs=2e-3)
+
+
+def test_rods_that_are_blown_at_the_head_stay_outside(groom: Groom) -> None:
+    solid = _core.Solid(np.ascontiguousarray(groom.scalp.points, np.float64), groom.scalp.triangles)
+
+    def deepest(live: Live) -> float:
+        live.wind = (20.0, 0.0, 0.0)
+        found = []
+        for _ in range(24):
+            live.step()
+            found.append(solid.above(live.rods[:, 3:].reshape(-1, 3))[0].min())
+        return float(min(found))
+
+    soft = Material(bend_scale=0.1)
+    assert deepest(Live(groom, soft, contact=0.0, bodies=())) < -0.05
+    assert deepest(Live(groom, soft, contact=0.0)) > 0.0
+
+
+def test_locks_that_are_lost_begin_again(groom: Groom) -> None:
+    live = swung(Live(groom))
+    live._strands.positions[VERTICES : 2 * VERTICES] = np.nan
+    assert live.step() == "1 of 8 locks were lost and begin again as groomed"
+    assert np.isfinite(live.positions).all()
+    assert live.step() == ""

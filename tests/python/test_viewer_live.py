@@ -247,7 +247,7 @@ def test_a_head_that_is_thrown_keeps_its_hair_and_says_so(groom: Groom, pose: An
     assert notes[1:] == ["", ""]
     assert "thrown" in notes[0] and "\n" not in notes[0]
     hand.held = None
-    for _ in range(48):
+    for _ in range(96):
         mover.step(hand, STEP)
     assert np.abs(mover.live.positions - groom.locks.points).max() < 5e-3
 

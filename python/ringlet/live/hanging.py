@@ -14,7 +14,8 @@ from ringlet.sim.strands import Strands
 Array = NDArray[np.float64]
 
 ROUNDS = 3  # to find a rest shape, on which the weight depends a little
-LEFT = 0.25  # of its stiffness without load, that a rod keeps in every direction
+LEFT = 0.5  # of its stiffness without load, that a rod keeps in every direction
+FALLS = 4.0  # how soon the share of a rod that is too soft falls to 0
 STIFFEST = 64.0  # times that a rod would have to be stiffer, at most, to carry all of its weight
 MOST_BENT = 0.5  # of a corner by the weight [rad]
 MOST_PRESSED = 0.5  # pressure along a rod, relative to its stretch stiffness
@@ -41,7 +42,8 @@ class HangingRods:
         """The rods of a wire, and what carries their weight besides themselves under gravity [m/s²], as groomed: [N],
         shape (n, 3)."""
         stiffness = wire.bend / wire.density
-        shares = np.clip(stiffness / np.maximum(self._least, 1e-30), 0.0, 1.0)
+        # What is a little unstable stands, until it is pushed; then it would lie elsewhere.
+        shares = np.clip(FALLS * (stiffness / np.maximum(self._least, 1e-30) - 1.0) + 1.0, 0.0, 1.0)
         strands = self.rods.strands(wire)
         for _ in range(ROUNDS):
             strain = self._strain(strands, wire, gravity)

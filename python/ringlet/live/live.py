@@ -28,7 +28,7 @@ from ringlet.sim.worn import worn_factors
 Array = NDArray[np.float64]
 
 GRAVITY = (0.0, -9.81, 0.0)  # [m/s²]
-CONTACT = 2.2e-8  # EI that contact adds to a lock in a crowd [N m²]: 4.7 times that of a hair
+CONTACT = 2.1e-4  # stiffness of the crowd about a lock, force by its length and displacement [N/m²]
 SOLVER = Solver(newton=2, tolerance=1e-5, integrator="backward_euler")
 
 CELL, MARGIN = 0.02, 0.1  # of the grid through which neighbours share motion, and how far it goes beyond the hair [m]
@@ -56,7 +56,7 @@ class Live:
     gravity:  [m/s²]
     wind:     velocity of the air [m/s]
     fps:      steps a second
-    contact:  EI that neighbours add to the bend stiffness of each lock [N m²]
+    contact:  how firmly neighbours hold each lock: force by its length and displacement [N/m²]
 
     All may be changed between steps, but for the rate. Raises UserError for values that are not finite.
 
@@ -127,7 +127,7 @@ class Live:
 
     @property
     def contact(self) -> float:
-        """EI that neighbours add to the bend stiffness of each lock [N m²]."""
+        """How firmly neighbours hold each lock, as an elastic foundation: force by length and displacement [N/m²]."""
         return self._contact
 
     @contact.setter
@@ -269,6 +269,7 @@ class Live:
             np.array(whole.points, np.float64), self._vertex, self._weight, rods, self._rods.curves.offsets, self.axes
         )
         self._grid = _core.VelocityGrid(rods.min(axis=0) - MARGIN, rods.max(axis=0) + MARGIN, CELL)
+        self._crowding = self._rods.crowding()
         self._set_bodies(rods)
         self._hanging = HangingRods(self._rods, self._wire(), self._groomed_gravity)
         self._strands, self._support = self._hanging.strands(self._wire(), self._groomed_gravity)
@@ -302,7 +303,9 @@ class Live:
         for name, wanted in WANTED.items():
             if wanted in locks.curve:
                 multiply(name, np.repeat(locks.curve[wanted], locks.counts))
-        return Wire.of(locks, self._material, factors, self._contact)
+        # A beam of length H on a foundation k is held as by the bend stiffness k H⁴.
+        added = self._contact * self._crowding * self._rods.curves.lengths() ** 4 / self._rods.rise
+        return Wire.of(locks, self._material, factors, added)
 
     def _set_strands(self) -> None:
         """Makes the rods of the present material; the hair goes on from where it is."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
+from scipy.spatial import KDTree
 
 from ringlet.data.curves import Curves
 from ringlet.motion import HelicalSpring
@@ -20,6 +21,8 @@ HELD = 3  # vertices of a rod that the head holds, with its frame
 HELD_EDGE = 0.02  # length of a held edge, as a fraction of the lock: longer ones would make the rest of the rod stiffer
 DEGREE = 5  # of a centre line as a polynomial of the place on the lock
 ROOT_WEIGHT = 30.0  # of the root in its fit, relative to other points
+NEIGHBOURS, MIDDLE = 6, 5  # of a rod in a crowd, and the vertex that they are near
+CROWDED = 2.0  # distance of the last of them in a crowd, in diameters of the coil
 LEAST_RISE = 0.05  # sin α of a coil that is closer than any hair's
 
 # A rod of 1 kg/m that is as stiff as its factors say: density, EA and 4π EI are 1.
@@ -133,6 +136,14 @@ class Rods:
     def coil(self, wire: Wire) -> HelicalSpring:
         """The coils of a wire about them."""
         return HelicalSpring(self.radius, self.rise, wire.bend, wire.twist, wire.pull)
+
+    def crowding(self) -> Array:
+        """How much each is in a crowd, from 0 alone to 1 where as many others as touch in a crowd are near it."""
+        if len(self.curves) <= NEIGHBOURS:
+            return np.zeros(len(self.curves))
+        middles = self.points.reshape(-1, VERTICES, 3)[:, MIDDLE]
+        farthest = np.asarray(KDTree(middles).query(middles, NEIGHBOURS + 1)[0])[:, -1]
+        return np.minimum(1.0, (CROWDED * 2.0 * self.radius / np.maximum(farthest, 1e-9)) ** 2)
 
     def strands(self, wire: Wire, rest: Array | None = None) -> Strands:
         """The rods in motion, as stiff and as heavy as coils of a wire are along their axes.
