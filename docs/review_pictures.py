@@ -43,7 +43,9 @@ FEW = {
     r"frames = \[1, 30\]": "frames = [1, 4]",
 }  # where panels are looked at
 SOME = {r"count = 1050": "count = 420", r"per_lock = 36": 'per_lock = 8\nwidth = "0.3 mm"'}  # few and thick, in a movie
-TIMELESS = "[data-number=draw], [data-number=groom] { display: none }"  # times of a busy machine in software
+TIMELESS = (
+    "[data-number=draw], [data-number=groom], .live-line .rate { display: none }"  # of a busy machine
+)
 
 
 class Page(Review):
@@ -162,6 +164,17 @@ def shot(browser: Browser) -> Image.Image:
         return page.taken()
 
 
+def live(browser: Browser) -> Image.Image:
+    """Live hair on a head that turns."""
+    with page_of(browser, "curls.recipe.toml", DESKTOP, "dark") as page:
+        page.page.keyboard.press("l")
+        page.until("ringlet.live.step")
+        page.press("Turn")
+        page.until("ringlet.live.step.head[2] > 0.45 || ringlet.live.step.head[2] < -0.2")
+        page.get("(ringlet.live.take = () => {})()")  # this step stays
+        return page.taken()
+
+
 def tablet(browser: Browser) -> Image.Image:
     with page_of(browser, "curls.recipe.toml", LYING, "light", touch=True) as page:
         page.page.keyboard.press("b")
@@ -240,7 +253,7 @@ def people(browser: Browser) -> Movie:
 
 
 PICTURES: dict[str, Callable[[Browser], Image.Image | Movie]] = {
-    made.__name__: made for made in (review, lock, sculpt, shot, tablet, people)
+    made.__name__: made for made in (review, lock, sculpt, shot, live, tablet, people)
 }
 
 SIZES = (DESKTOP, WIDE, TABLET, LYING, PHONE)

@@ -101,6 +101,24 @@ def test_hair_moves_live_on_all_pages_and_rests_again(folder: Path) -> None:
         assert leader.received[-1]["kind"] != "live_step"
 
 
+def test_a_page_that_comes_later_sees_it_and_one_that_leaves_lets_go(folder: Path) -> None:
+    with serving(folder) as client:
+        with page(client) as leader:
+            leader.receive("measured")
+            leader.send(kind="go_live", on=True)
+            leader.receive("live_step")
+            leader.send(kind="hold_head", turn=[0.0, 0.5, 0.0])
+            while leader.receive("live_step")["head"][2] < 0.4:
+                pass
+            with page(client, "two") as other:
+                rods = other.latest("rods")
+                assert other.latest("live", on=True)["fps"] > 0.0
+                assert other.receive("live_step", key=rods["key"])["head"][2] > 0.4
+        with page(client, "three") as last:
+            while abs(last.receive("live_step")["head"][2]) > 0.01:
+                pass
+
+
 def test_only_the_page_that_leads_turns_it_on(folder: Path) -> None:
     with serving(folder) as client, page(client) as leader, page(client, "two") as other:
         leader.receive("measured")

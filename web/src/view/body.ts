@@ -87,7 +87,7 @@ const LOOKS: Record<string, Record<"roughness" | "specular" | "flatness" | "shee
   matte: { roughness: 0.8, specular: 0.2, flatness: 0, sheen: 0, sheenTint: 0 },
 };
 
-const NECK = 0.045; // height over which a neck bends, below its joint with the head [m]
+const NECK = { height: 0.045, radius: 0.045, shoulder: 12 }; // it bends over a height, less high beyond its radius [m]
 
 /** How head and trunk have moved: the motion of the one, the shift of the other, and where the neck joins them [m]. */
 export interface Pose {
@@ -176,7 +176,9 @@ export class Body {
     this.posed.set(side, [position, normal]);
     const [place, moved] = [new Vector3(), new Vector3()];
     for (let i = 0; i < rest.length; i += 3) {
-      const t = cloth ? 0 : Math.min(1, Math.max(0, 1 + (rest[i + 1] - pivot.y) / NECK));
+      const beyond = Math.max(0, Math.hypot(rest[i] - pivot.x, rest[i + 2] - pivot.z) / NECK.radius - 1);
+      const depth = ((pivot.y - rest[i + 1]) / NECK.height) * (1 + NECK.shoulder * beyond);
+      const t = cloth ? 0 : Math.min(1, Math.max(0, 1 - depth));
       const share = t * t * (3 - 2 * t);
       place.fromArray(rest, i);
       moved.copy(place).applyMatrix4(head);
