@@ -2,6 +2,10 @@
 #pragma once
 
 #include "ringlet/geometry/solid.h"
+#include "ringlet/geometry/uniform_grid.h"
+
+#include <array>
+#include <vector>
 
 namespace ringlet {
 
@@ -18,12 +22,9 @@ public:
     Sample at(const Vec3 &place) const;
 
 private:
-    size_t corner(int x, int y, int z) const { return (size_t(x) * count_[1] + y) * count_[2] + z; }
-    double between_coarse(int x, int y, int z) const;
+    double between_coarse(const std::array<int, 3> &corner) const;
 
-    Vec3 low_;
-    double cell_;
-    int count_[3];
+    UniformGrid grid_;
     std::vector<float> corners_;
 };
 

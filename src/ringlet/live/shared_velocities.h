@@ -1,6 +1,7 @@
 // Neighbours in a crowd of hair share their motion: a grid of velocities in the frame of the head stands in for contact.
 #pragma once
 
+#include "ringlet/geometry/uniform_grid.h"
 #include "ringlet/live/pose.h"
 
 #include <vector>
@@ -28,18 +29,9 @@ private:
         double mass;
         Vec3 velocity; // momentum, until all vertices are there
     };
-    struct Place {
-        int corner;  // the first of eight; -1: outside
-        Vec3 within; // 0 … 1
-    };
-    Place locate(const Vec3 &groomed) const;
-    template <class Work> void for_corners(const Place &place, const Work &work) const; // work(corner, weight)
-
-    Vec3 low_;
-    double cell_;
-    int count_[3];
+    UniformGrid grid_;
     std::vector<Corner> corners_;
-    std::vector<Place> places_;
+    std::vector<std::optional<UniformGrid::Place>> places_; // of vertices
     std::vector<Vec3> relative_;
 };
 
