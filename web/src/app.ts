@@ -185,6 +185,7 @@ export class App {
       for (const side of model.others) viewer.compare(side, false); // the new server compares nothing
       model.compared = {};
       model.tell("compared");
+      model.putAtRest(); // nor does it move hair
       if (!message.recovered) this.unsaved.giveBack();
     }
     this.unsaved.forget();

@@ -213,6 +213,12 @@ export class Model {
     this.chosen = { file: "recipe", place: ["curl"] };
   }
 
+  /** Hair no longer moves live. */
+  putAtRest(): void {
+    this.live = NOT_LIVE;
+    this.tell("live");
+  }
+
   /** Keeps a picture of the server. */
   setPicture(name: string, data: Uint8Array<ArrayBuffer>): void {
     const before = this.pictures.get(name);

@@ -217,3 +217,12 @@ test("hair goes on from where it is seen when groom and rods change, and new loc
   for (let c = 0; c < 3; c++) expect(resampled[3 + c]).toBeCloseTo(0.5 * (places[c] + places[6 + c]), 5);
   expect([shareLeft(0), shareLeft(1)]).toEqual([1, 0]);
 });
+
+test("hair is at rest when another server is found, which does not move it", async () => {
+  const [page] = await moving();
+  page.hear({ ...page.model.welcome!, session: "another" });
+  expect(page.app.viewer.hair.a.motions).toBe(null);
+  expect(find(".live-line").hidden).toBe(true);
+  press("l", {}, page.app.viewer.canvas);
+  expect(page.last("go_live").on).toBe(true);
+});
