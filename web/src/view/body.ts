@@ -96,6 +96,14 @@ export interface Pose {
   pivot: Vector3;
 }
 
+/** How far skin goes with the head, from its place about the joint of the neck [m]. */
+function shareOfHead(x: number, y: number, z: number): number {
+  if (y >= 0) return 1;
+  const beyond = Math.max(0, Math.hypot(x, z) / NECK.radius - 1);
+  const t = Math.max(0, 1 + (y / NECK.height) * (1 + NECK.shoulder * beyond));
+  return t * t * (3 - 2 * t);
+}
+
 export class Body {
   readonly mesh: Mesh;
   readonly caster: Mesh;
@@ -174,18 +182,16 @@ export class Body {
     const { rest, normals, cloth } = this;
     const [position, normal] = this.posed.get(side) ?? [new BufferAttribute(rest.slice(), 3), new BufferAttribute(normals.slice(), 3)];
     this.posed.set(side, [position, normal]);
-    const [place, moved] = [new Vector3(), new Vector3()];
+    const { elements: m } = head;
+    const shift = trunk.toArray();
     for (let i = 0; i < rest.length; i += 3) {
-      const beyond = Math.max(0, Math.hypot(rest[i] - pivot.x, rest[i + 2] - pivot.z) / NECK.radius - 1);
-      const depth = ((pivot.y - rest[i + 1]) / NECK.height) * (1 + NECK.shoulder * beyond);
-      const t = cloth ? 0 : Math.min(1, Math.max(0, 1 - depth));
-      const share = t * t * (3 - 2 * t);
-      place.fromArray(rest, i);
-      moved.copy(place).applyMatrix4(head);
-      place.add(trunk).lerp(moved, share).toArray(position.array, i);
-      place.fromArray(normals, i);
-      moved.copy(place).transformDirection(head);
-      place.lerp(moved, share).toArray(normal.array, i);
+      const share = cloth ? 0 : shareOfHead(rest[i] - pivot.x, rest[i + 1] - pivot.y, rest[i + 2] - pivot.z);
+      for (let c = 0; c < 3; c++) {
+        const turned = m[c] * rest[i] + m[4 + c] * rest[i + 1] + m[8 + c] * rest[i + 2] + m[12 + c];
+        const direction = m[c] * normals[i] + m[4 + c] * normals[i + 1] + m[8 + c] * normals[i + 2];
+        position.array[i + c] = rest[i + c] + shift[c] + share * (turned - rest[i + c] - shift[c]);
+        normal.array[i + c] = normals[i + c] + share * (direction - normals[i + c]);
+      }
     }
     position.needsUpdate = normal.needsUpdate = true;
     geometry.setAttribute("position", position).setAttribute("normal", normal);
