@@ -226,3 +226,14 @@ test("hair is at rest when another server is found, which does not move it", asy
   press("l", {}, page.app.viewer.canvas);
   expect(page.last("go_live").on).toBe(true);
 });
+
+test("the picture of hair that stands is left to get finer", async () => {
+  const [page, rods] = await moving();
+  vi.advanceTimersByTime(1000);
+  const carry = vi.spyOn(page.app.viewer, "carry");
+  const step = (motion: Matrix4) => (page.hear(stepOf(rods, motion)), vi.advanceTimersByTime(50));
+  step(TURN);
+  expect(carry).not.toHaveBeenCalled();
+  step(TURN.clone().setPosition(0.02, 0, 0));
+  expect(carry).toHaveBeenCalledTimes(1);
+});

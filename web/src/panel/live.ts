@@ -25,6 +25,8 @@ const SIDES: [Blow["side"], string][] = [
   ["back", "wind from behind"],
 ];
 
+const STILL = 2e-5; // way of a vertex in a step that is not seen [m]
+const EASED = 1000; // time in which hair has gone over to another groom [ms]
 const SAID_FOR = 6000; // [ms]
 const CAUTION = "Live: locks may pass through one another";
 
@@ -39,6 +41,9 @@ export class LiveHair {
   private readonly cut = h("span", { class: "cut-off", role: "status" });
   private rods: Rods | null = null;
   private step: LiveStep | null = null;
+  private shown: LiveStep | null = null;
+  /** When groom, rods or bodies came last [ms]. */
+  private changed = 0;
   /** When steps were seen in the last second [ms]. */
   private seen: number[] = [];
   private waiting = false;
@@ -58,11 +63,15 @@ export class LiveHair {
     });
     model.hear("rods", (message) => {
       this.rods = new Rods(message);
+      this.changed = performance.now();
       this.step = null;
     });
     model.hear("live_step", (message) => this.take(message));
     for (const kind of ["locks", "hairs", "body"] as const)
-      model.hear(kind, () => this.step && this.show()); // they came at rest
+      model.hear(kind, () => {
+        this.changed = performance.now();
+        if (this.step) this.show(); // they came at rest
+      });
   }
 
   private toggle(): void {
@@ -85,7 +94,7 @@ export class LiveHair {
       if (name === "clip") motion.toggleAttribute("hidden", this.model.welcome?.mode !== "shot");
     }
     this.wind.value = live.wind;
-    if (!live.on) this.rods = this.step = null;
+    if (!live.on) this.rods = this.step = this.shown = null;
     if (!this.step) this.viewer.putAtRest(); // a frame of a shot may be seen
   }
 
@@ -99,7 +108,7 @@ export class LiveHair {
     requestAnimationFrame(() => {
       this.waiting = false;
       if (!this.step) return;
-      this.show();
+      if (!this.stands) this.show(); // the picture of hair that stands gets finer
       this.count();
     });
   }
@@ -111,9 +120,18 @@ export class LiveHair {
     this.saying = window.setTimeout(() => (this.cut.textContent = ""), SAID_FOR);
   }
 
+  /** Whether the step is not seen to differ from the one that is shown. */
+  private get stands(): boolean {
+    const { shown, step } = this;
+    if (!shown || !step || shown.key !== step.key || performance.now() - this.changed < EASED) return false;
+    const near = (a: ArrayLike<number>, b: ArrayLike<number>) => Array.prototype.every.call(a, (x: number, i) => Math.abs(x - b[i]) < STILL);
+    return near(step.head, shown.head) && near(step.trunk, shown.trunk) && near(step.points, shown.points);
+  }
+
   private show(): void {
     const { rods, step, viewer } = this;
     if (!rods || !step) return;
+    this.shown = step;
     const { trunk, points, worn } = step;
     viewer.carry(rods, points, { head: headOf(step), trunk: new Vector3(...trunk), pivot: new Vector3(...rods.message.pivot) }, worn);
   }
