@@ -23,11 +23,11 @@ void VelocityGrid::share(View<Vec3> positions, View<double> masses, View<unsigne
     relative_.resize(n);
     for (size_t i = 0; i < n; ++i) {
         const Vec3 groomed = to.to_groom(positions[i]);
-        places_[i] = grid_.locate(groomed);
+        const std::optional<UniformGrid::Place> &place = places_[i] = grid_.locate(groomed);
         const Vec3 of_head = (positions[i] - from.to_world(groomed)) / dt;
         relative_[i] = held[i] ? Vec3::Zero() : Vec3(to.rotation.transpose() * (velocities[i] - of_head));
-        if (!places_[i]) continue;
-        grid_.for_corners(*places_[i], [&](size_t corner, double weight, const Vec3 &) {
+        if (!place) continue;
+        grid_.for_corners(*place, [&](size_t corner, double weight, const Vec3 &) {
             corners_[corner].mass += weight * masses[i];
             corners_[corner].velocity += weight * masses[i] * relative_[i];
         });
@@ -35,9 +35,10 @@ void VelocityGrid::share(View<Vec3> positions, View<double> masses, View<unsigne
     for (Corner &corner : corners_)
         if (corner.mass > 0) corner.velocity /= corner.mass;
     for (size_t i = 0; i < n; ++i) {
-        if (held[i] || !places_[i]) continue;
+        const std::optional<UniformGrid::Place> &place = places_[i];
+        if (held[i] || !place) continue;
         Vec3 mean = Vec3::Zero();
-        grid_.for_corners(*places_[i],
+        grid_.for_corners(*place,
                           [&](size_t corner, double weight, const Vec3 &) { mean += weight * corners_[corner].velocity; });
         velocities[i] += to.rotation * (sharing.share * (sharing.keep * mean - relative_[i]));
     }
