@@ -28,7 +28,7 @@ CORE = ("src",)
 GROOM = (*CORE, *(f"python/ringlet/{name}" for name in ("data", "deform", "groom", "io")))
 SIM = (*GROOM, "python/ringlet/sim")
 REST = (*SIM, "python/ringlet/rest")
-UNTIMED = {"iterations", "liveliness", "nest", "noise", "tips", "warp"}  # what counts is no time: no turns
+UNTIMED = {"iterations", "liveliness", "nest", "noise", "serial", "tips", "warp"}  # what counts is no time: no turns
 MEASURED = {  # folders, where not the core alone
     "groom": GROOM,
     "slider": GROOM,

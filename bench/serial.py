@@ -58,7 +58,7 @@ def run(
         per="all",
         warm_up=0,
         barrier_us={str(count): 1e6 * cost for count, cost in barriers.items()},
-        **results,
+        scenes=results,
     )
 
 

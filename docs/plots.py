@@ -24,6 +24,7 @@ from releases import PRESCRIBED, scenes
 RESULTS = Path(__file__).parents[1] / "bench" / "results"
 FRAMES = RESULTS / "frames.json"
 TIPS = RESULTS / "tips_threads_1.json"
+SERIAL = RESULTS / "serial_turns_3.json"
 AT_ONE_RESOLUTION = {"plucked-coil", "bounce", "friction", "push", "nest"}  # cases without a panel, which take long
 RESOLUTION = re.compile(r"(?P<curve>.*), (?P<n>\d+) (edges|vertices a turn)$")
 
@@ -96,6 +97,27 @@ def write_tips(path: Path) -> None:
     axes.set_ylim(0, None)
     axes.set_xlabel("frame", fontsize=9)
     axes.set_ylabel("distance of the median tip [mm]", fontsize=9)
+    axes.grid(alpha=0.3)
+    axes.legend(fontsize=8, frameon=False)
+    with replacing(path) as aside:
+        figure.savefig(aside)
+
+
+def write_speed_up(path: Path) -> None:
+    """The speed-up of a step by workers as the model has it, with what two threads measured, and without serial parts."""
+    scenes = json.loads(SERIAL.read_text())["result"]["scenes"]
+    figure = Figure(figsize=(8, 3.4), layout="constrained")
+    axes = figure.subplots()
+    for color, (name, scene) in zip(("#8c3b2a", "#2a5b8c"), scenes.items(), strict=True):
+        workers = [1, *map(int, scene["speed_up"])]
+        axes.plot(workers, [1, *scene["speed_up"].values()], "o-", ms=3, lw=1.5, color=color, label=f"{name}, model")
+        axes.plot(2, scene["measured_2"], "x", ms=8, mew=2, color=color, label=f"{name}, two threads measured")
+    axes.plot(workers, workers, ":", color="gray", label="without serial parts")
+    axes.set_xscale("log", base=2)
+    axes.set_xticks(workers, [str(count) for count in workers])
+    axes.set_ylim(1, 1.2 * max(max(scene["speed_up"].values()) for scene in scenes.values()))
+    axes.set_xlabel("workers", fontsize=9)
+    axes.set_ylabel("speed-up of a step", fontsize=9)
     axes.grid(alpha=0.3)
     axes.legend(fontsize=8, frameon=False)
     with replacing(path) as aside:
