@@ -104,7 +104,7 @@ def write_tips(path: Path) -> None:
 
 
 def write_speed_up(path: Path) -> None:
-    """The speed-up of a step by workers as the model has it, with what two threads measured, and without serial parts."""
+    """The speed-up of a step by workers: of the model, as measured with two threads, and without serial parts."""
     scenes = json.loads(SERIAL.read_text())["result"]["scenes"]
     figure = Figure(figsize=(8, 3.4), layout="constrained")
     axes = figure.subplots()

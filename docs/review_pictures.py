@@ -43,9 +43,7 @@ FEW = {
     r"frames = \[1, 30\]": "frames = [1, 4]",
 }  # where panels are looked at
 SOME = {r"count = 1050": "count = 420", r"per_lock = 36": 'per_lock = 8\nwidth = "0.3 mm"'}  # few and thick, in a movie
-TIMELESS = (
-    "[data-number=draw], [data-number=groom], .live-line .rate { display: none }"  # of a busy machine
-)
+TIMELESS = "[data-number=draw], [data-number=groom], .live-line .rate { display: none }"  # of a busy machine
 
 
 class Page(Review):
