@@ -10,6 +10,7 @@ export default defineConfig({
     maxWorkers: 1, // other tests run on the other processor
     isolate: false, // each page has modules of its own
     css: false,
+    testTimeout: 60_000, // no time is judged, and the first page loads all modules
     unstubGlobals: true,
   },
 });

@@ -1,4 +1,5 @@
 // The configuration and the path limiter: moves end before pairs come too close, and what meets nothing moves fully.
+#include "ringlet/math/parallel_copy.h"
 #include "ringlet/solver/search_path.h"
 #include "spring_masses.h"
 
@@ -75,7 +76,7 @@ BOOST_AUTO_TEST_CASE(a_limited_path_leads_where_its_move_ends) {
     BOOST_TEST(!moves.are_full());
     BOOST_TEST(moves.fraction[0] < 1.0);
     BOOST_TEST(moves.fraction[1] == 1.0);
-    AlignedVector end = x.copy();
+    AlignedVector end = parallel_copy(x);
     move_along(*scene.blocks, x, {1.0, 1.0}, path, {1, 1}, end);
     for (const int v : {0, 1}) BOOST_TEST((scene.blocks->position(end, v) - move.to[v]).norm() < 1e-15);
 }
@@ -91,7 +92,7 @@ BOOST_AUTO_TEST_CASE(a_line_search_shortens_a_path_whose_energy_rises) {
     scene.system->solve({}, path.straight);
     for (int i = 0; i < 3; ++i) path.straight[i] *= 5.0; // far beyond the minimum
     const double wanted = path.straight[2];
-    AlignedVector end = x.copy();
+    AlignedVector end = parallel_copy(x);
     const LineSearchResult found = line_search(*scene.objective, {}, path, {0, 0}, end);
     BOOST_TEST(found.step[0] == 0.25);
     BOOST_TEST(end[2] - x[2] == 0.25 * wanted, boost::test_tools::tolerance(1e-9));

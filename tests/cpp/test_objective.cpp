@@ -1,4 +1,5 @@
 // The objective of a step: energies of contacts shared to objects, their derivatives, and the linear system.
+#include "ringlet/math/parallel_copy.h"
 #include "spring_masses.h"
 
 #include <boost/test/unit_test.hpp>
@@ -97,7 +98,7 @@ BOOST_AUTO_TEST_CASE(the_gradient_is_the_derivative_of_the_energy) {
     objective.energies_at_linearisation(unused);
     const double h = 1e-8;
     for (size_t i = 0; i < x.size(); ++i) {
-        AlignedVector more = x.copy(), less = x.copy();
+        AlignedVector more = parallel_copy(x), less = parallel_copy(x);
         more[i] += h, less[i] -= h;
         const int block = int(i / 6);
         const double slope = (energy(more) - energy(less)) / (2 * h), gradient = (*scene.blocks)[block].gradient()[i % 6];
@@ -246,7 +247,7 @@ BOOST_AUTO_TEST_CASE(the_line_search_shortens_a_cluster_and_leaves_the_others_al
     SearchPath path = newton_path(scene);
     const AlignedVector x = scene.unknowns();
     for (size_t i = 0; i < 18; ++i) path.straight[i] *= 3.0; // the cluster overshoots: its energy would rise
-    AlignedVector to = x.copy();
+    AlignedVector to = parallel_copy(x);
     const ReachablePairs pairs = scene.configuration->pairs.reachable_pairs(scene.blocks->active_objects());
     const LineSearchResult found = line_search(*scene.objective, pairs, path, std::vector<unsigned char>(4, 0), to);
     BOOST_TEST(found.cuts > 0);
@@ -264,7 +265,7 @@ BOOST_AUTO_TEST_CASE(the_line_search_shortens_the_objects_that_cause_the_excess_
     for (size_t i = 12; i < 18; ++i) path.straight[i] *= 2.05;
     const ReachablePairs pairs = scene.configuration->pairs.reachable_pairs(scene.blocks->active_objects());
     const auto steps = [&](const std::vector<unsigned char> &accepted) {
-        AlignedVector to = x.copy();
+        AlignedVector to = parallel_copy(x);
         return line_search(*scene.objective, pairs, path, accepted, to).step;
     };
     BOOST_TEST(steps({1, 1, 0, 1})[2] < 1.0); // its energy rises
