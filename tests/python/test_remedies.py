@@ -9,11 +9,12 @@ import messages
 import pytest
 import remedies
 import remedies_files
+import remedies_live
 import remedies_review
 
 import ringlet
 
-ROWS = remedies.ROWS + remedies_files.ROWS + remedies_review.ROWS
+ROWS = remedies.ROWS + remedies_files.ROWS + remedies_live.ROWS + remedies_review.ROWS
 
 UNTRIED = 2  # messages whose advice no row follows
 
