@@ -6,10 +6,13 @@ import json
 import re
 import sys
 from collections import defaultdict
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from ringlet.data.curves import Curves
 from ringlet.data.files import replacing
@@ -64,64 +67,59 @@ def write_convergence(path: Path) -> None:
         figure.savefig(aside)
 
 
+@contextmanager
+def chart(path: Path, across: str, up: str) -> Iterator[Axes]:
+    """Axes with the names of what they show, to be drawn into; writes them to a file."""
+    figure = Figure(figsize=(8, 3.4), layout="constrained")
+    axes = figure.subplots()
+    yield axes
+    axes.set_xlabel(across, fontsize=9)
+    axes.set_ylabel(up, fontsize=9)
+    axes.grid(alpha=0.3)
+    axes.legend(fontsize=8, frameon=False)
+    with replacing(path) as aside:
+        figure.savefig(aside)
+
+
 def write_memory(path: Path) -> None:
     """Resident memory over the frames of a long shot and of its hairs, and what all frames together would take."""
     result = json.loads(FRAMES.read_text())["result"]
     frames = np.arange(len(result["megabytes"])) * result["params"]["every"] + 1
     all_kept = result["megabytes"][0] + frames / result["params"]["frames"] * result["megabytes_of_checkpoints"]
-    figure = Figure(figsize=(8, 3.2), layout="constrained")
-    axes = figure.subplots()
-    axes.plot(frames, result["megabytes"], color="#8c3b2a", label="while it is simulated")
-    axes.plot(frames, result["megabytes_hairs"], color="#2a5b8c", label="then, while its hairs are written")
-    axes.plot(frames, all_kept, ":", color="gray", label="simulated with all frames kept (reckoned)")
-    axes.set_ylim(0, None)
-    axes.set_xlabel("frame", fontsize=9)
-    axes.set_ylabel("resident memory [MB]", fontsize=9)
-    axes.grid(alpha=0.3)
-    axes.legend(fontsize=8, frameon=False, loc="lower right")
-    with replacing(path) as aside:
-        figure.savefig(aside)
+    with chart(path, "frame", "resident memory [MB]") as axes:
+        axes.plot(frames, result["megabytes"], color="#8c3b2a", label="while it is simulated")
+        axes.plot(frames, result["megabytes_hairs"], color="#2a5b8c", label="then, while its hairs are written")
+        axes.plot(frames, all_kept, ":", color="gray", label="simulated with all frames kept (reckoned)")
+        axes.set_ylim(0, None)
 
 
 def write_tips(path: Path) -> None:
     """How far the median tip is from its place in the first frame: without contact, converged, and at settings."""
     result = json.loads(TIPS.read_text())["result"]
     frames = 1 + np.arange(len(result["free_mm"]))
-    figure = Figure(figsize=(8, 3.4), layout="constrained")
-    axes = figure.subplots()
-    axes.plot(frames, result["free_mm"], ":", color="gray", lw=1.5, label="without contact")
-    axes.plot(frames, result["converged_mm"], color="black", lw=2.5, alpha=0.6, label="converged")
     colors = mpl.colormaps["viridis"].resampled(len(result["trials"]) + 1)
-    for k, trial in enumerate(result["trials"]):
-        axes.plot(frames, trial["tips_mm"], color=colors(k), lw=1.2, label=f"{trial['iterations']} iterations")
-    axes.set_ylim(0, None)
-    axes.set_xlabel("frame", fontsize=9)
-    axes.set_ylabel("distance of the median tip [mm]", fontsize=9)
-    axes.grid(alpha=0.3)
-    axes.legend(fontsize=8, frameon=False)
-    with replacing(path) as aside:
-        figure.savefig(aside)
+    with chart(path, "frame", "distance of the median tip [mm]") as axes:
+        axes.plot(frames, result["free_mm"], ":", color="gray", lw=1.5, label="without contact")
+        axes.plot(frames, result["converged_mm"], color="black", lw=2.5, alpha=0.6, label="converged")
+        for k, trial in enumerate(result["trials"]):
+            axes.plot(frames, trial["tips_mm"], color=colors(k), lw=1.2, label=f"{trial['iterations']} iterations")
+        axes.set_ylim(0, None)
 
 
 def write_speed_up(path: Path) -> None:
     """The speed-up of a step by workers: of the model, as measured with two threads, and without serial parts."""
     scenes = json.loads(SERIAL.read_text())["result"]["scenes"]
-    figure = Figure(figsize=(8, 3.4), layout="constrained")
-    axes = figure.subplots()
-    for color, (name, scene) in zip(("#8c3b2a", "#2a5b8c"), scenes.items(), strict=True):
-        workers = [1, *map(int, scene["speed_up"])]
-        axes.plot(workers, [1, *scene["speed_up"].values()], "o-", ms=3, lw=1.5, color=color, label=f"{name}, model")
-        axes.plot(2, scene["measured_2"], "x", ms=8, mew=2, color=color, label=f"{name}, two threads measured")
-    axes.plot(workers, workers, ":", color="gray", label="without serial parts")
-    axes.set_xscale("log", base=2)
-    axes.set_xticks(workers, [str(count) for count in workers])
-    axes.set_ylim(1, 1.2 * max(max(scene["speed_up"].values()) for scene in scenes.values()))
-    axes.set_xlabel("workers", fontsize=9)
-    axes.set_ylabel("speed-up of a step", fontsize=9)
-    axes.grid(alpha=0.3)
-    axes.legend(fontsize=8, frameon=False)
-    with replacing(path) as aside:
-        figure.savefig(aside)
+    workers = [1, *map(int, next(iter(scenes.values()))["speed_up"])]
+    with chart(path, "workers", "speed-up of a step") as axes:
+        for color, (name, scene) in zip(("#8c3b2a", "#2a5b8c"), scenes.items(), strict=True):
+            axes.plot(
+                workers, [1, *scene["speed_up"].values()], "o-", ms=3, lw=1.5, color=color, label=f"{name}, model"
+            )
+            axes.plot(2, scene["measured_2"], "x", ms=8, mew=2, color=color, label=f"{name}, two threads measured")
+        axes.plot(workers, workers, ":", color="gray", label="without serial parts")
+        axes.set_xscale("log", base=2)
+        axes.set_xticks(workers, [str(count) for count in workers])
+        axes.set_ylim(1, 1.2 * max(max(scene["speed_up"].values()) for scene in scenes.values()))
 
 
 RELEASED = {

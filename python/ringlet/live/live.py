@@ -15,6 +15,7 @@ from ringlet import _core
 from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Mesh
+from ringlet.data.rigid import rotation_vector
 from ringlet.live.hanging import HangingRods
 from ringlet.live.rods import VERTICES, Rods, Wire, places, vertex_places
 from ringlet.shot.material import Material
@@ -345,7 +346,7 @@ class Live:
         move = self._head @ np.linalg.inv(self._pose)
         centre = _moved(self._rods.points.mean(axis=0, keepdims=True), self._pose)
         distance = float(np.linalg.norm(_moved(centre, move) - centre))
-        angle = float(np.arccos(np.clip(0.5 * (np.trace(move[:3, :3]) - 1.0), -1.0, 1.0)))
+        angle = float(np.linalg.norm(rotation_vector(move[:3, :3])))
         if distance <= FARTHEST and angle <= FASTEST:
             return ""
         memory = self._strands.memory

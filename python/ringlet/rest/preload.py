@@ -18,8 +18,9 @@ from numpy.typing import NDArray
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
+from ringlet.data.rigid import rotate
 from ringlet.rest.loft import Loft, Progress, largest_per_lock
-from ringlet.rest.rod_strains import RodStrains, edges, measure_strains, rotate, shape_of_strains
+from ringlet.rest.rod_strains import RodStrains, edges, measure_strains, shape_of_strains
 from ringlet.shot.shot import Shot
 from ringlet.sim.shot_strands import make_strands
 from ringlet.sim.strands import Strands

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ringlet import _core
 from ringlet.data.curves import Curves
+from ringlet.data.rigid import rotate
 
 Array = NDArray[np.float64]
 
@@ -110,14 +111,6 @@ def _but_ends(curves: Curves, last: int) -> NDArray[np.int64]:
 def wrap(angle: Array) -> Array:
     """The same angle within (−π, π]."""
     return np.pi - np.mod(np.pi - angle, 2.0 * np.pi)
-
-
-def rotate(vectors: Array, rotations: Array) -> Array:
-    """Vectors rotated by rotation vectors [rad], shapes (k, 3); Rodrigues' formula."""
-    angle = np.linalg.norm(rotations, axis=1, keepdims=True)
-    axis = rotations / np.where(angle > 0.0, angle, 1.0)
-    along = _dot(axis, vectors)[:, None] * axis
-    return along + np.cos(angle) * (vectors - along) + np.sin(angle) * np.cross(axis, vectors)
 
 
 def minimal_rotations(before: Array, after: Array) -> Array:

@@ -9,6 +9,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from ringlet.data.rigid import rotation_matrix, rotation_vector
+
 Array = NDArray[np.float64]
 
 FREQUENCY, DAMPING = 1.4, 0.4  # of the spring that brings back a head that is let go [Hz], relative to the critical one
@@ -77,7 +79,7 @@ def clip_motion(transforms: Array, pivot: Array, fps: float) -> Motion:
     pivot:      of the head [m]
     """
     count, back = len(transforms), max(1, round(LOOP * fps))
-    turns = np.array([_vector(transform[:3, :3]) for transform in transforms])
+    turns = np.array([rotation_vector(transform[:3, :3]) for transform in transforms])
     shifts = transforms[:, :3, :3] @ pivot + transforms[:, :3, 3] - pivot
 
     def at(t: float) -> tuple[Array, Array]:
@@ -174,7 +176,7 @@ class Head:
         """The rigid motion of the head since it was groomed, shape (4, 4)."""
         turn = self.turn + sum((one.now()[0] for one in self._all), np.zeros(3))
         matrix = np.eye(4)
-        matrix[:3, :3] = _rotation(turn)
+        matrix[:3, :3] = rotation_matrix(turn)
         matrix[:3, 3] = self.pivot + self.trunk - matrix[:3, :3] @ self.pivot
         return matrix
 
@@ -187,21 +189,3 @@ def _smooth(x: float) -> float:
     """From 0 to 1, with no slope at the ends."""
     x = min(max(x, 0.0), 1.0)
     return x * x * (3.0 - 2.0 * x)
-
-
-def _rotation(vector: Array) -> Array:
-    """The matrix of a rotation vector [rad]; Rodrigues' formula."""
-    angle = float(np.linalg.norm(vector))
-    if angle < 1e-12:
-        return np.eye(3)
-    x, y, z = vector / angle
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    return np.eye(3) + math.sin(angle) * cross + (1.0 - math.cos(angle)) * cross @ cross
-
-
-def _vector(matrix: Array) -> Array:
-    """The rotation vector of a matrix [rad], up to half a turn."""
-    angle = math.acos(min(max(0.5 * (np.trace(matrix) - 1.0), -1.0), 1.0))
-    axis = np.array([matrix[2, 1] - matrix[1, 2], matrix[0, 2] - matrix[2, 0], matrix[1, 0] - matrix[0, 1]])
-    sine = float(np.linalg.norm(axis))
-    return np.zeros(3) if sine < 1e-12 else angle / sine * axis
