@@ -91,6 +91,14 @@ void bind_live(nb::module_ &module) {
             "body"_a, "start"_a, "end"_a, "positions"_a, "clearance"_a,
             "Takes a body that goes from one pose (4, 4) to another, with vertices (n, 3) [m] where they start the step, and\n"
             "how far each stays away from it, (n,) [m].")
+        .def(
+            "add_ball",
+            [](BodyPlanes &planes, const Array1<double> &from, const Array1<double> &to, double radius, double most,
+               const Array3<double> &positions, const Array1<double> &clearance) {
+                planes.add_ball(vector_of(from), vector_of(to), radius, most, vectors<Vec3>(positions), view(clearance));
+            },
+            "start"_a, "end"_a, "radius"_a, "most"_a, "positions"_a, "clearance"_a,
+            "Takes a ball whose centre (3,) goes from one place to another; what is inside comes out by `most` [m] at most.")
         .def_prop_ro(
             "normals", [](nb::object self) { return state_view(self, nb::cast<BodyPlanes &>(self).normal); },
             "Normals of the planes, shape (n, 3).")

@@ -146,21 +146,25 @@ void bind_strand(nb::module_ &module) {
         .def(
             "step",
             [](Strands &self, Array3<double> targets, Array3<double> forces, const SceneStep &settings,
-               const std::optional<std::tuple<Array3<double>, Array1<double>, Array1<double>>> &planes) {
+               const std::optional<std::tuple<Array3<double>, Array1<double>, Array1<double>>> &planes,
+               const std::optional<std::tuple<Array3<double>, Array1<double>>> &springs) {
                 StrandPlanes at;
+                StrandSprings pull;
                 if (planes) at = {vectors<Vec3>(std::get<0>(*planes)), view(std::get<1>(*planes)), view(std::get<2>(*planes))};
+                if (springs) pull = {vectors<Vec3>(std::get<0>(*springs)), view(std::get<1>(*springs))};
                 {
                     nb::gil_scoped_release release;
                     step_strands(self.model, self.state(), vectors<Vec3>(targets), vectors<Vec3>(forces), settings.strands,
-                                 self.reports, at);
+                                 self.reports, at, pull);
                 }
                 const size_t rows = self.reports.size();
                 return to_numpy<double>(std::vector<StrandReport>(self.reports), {rows, column_count<StrandReport>});
             },
-            "targets"_a, "forces"_a, "settings"_a, "planes"_a = nb::none(),
+            "targets"_a, "forces"_a, "settings"_a, "planes"_a = nb::none(), "springs"_a = nb::none(),
             "One time step; targets: where held vertices are at its end [m], shape (n, 3); planes: normals (n, 3), offsets "
             "[m]\n"
-            "and stiffnesses [N/m], (n,), of one in front of each vertex. Returns one report row per strand (REPORT).")
+            "and stiffnesses [N/m], (n,), of one in front of each vertex; springs: targets (n, 3) [m] and stiffnesses (n,)\n"
+            "[N/m]. Returns one report row per strand (REPORT).")
         .def_prop_ro(
             "memory", [](Strands &self) { return memory_of(self.state()); },
             "All that the next step depends on besides the model, as arrays by name.")

@@ -83,6 +83,7 @@ from .farm import write_wedge_template as write_wedge_template
 from .groom.stages import Memory as Memory
 from .host import serve as serve
 from .live import Live as Live
+from .live import Touch as Touch
 from .rest.loft import Loft as Loft
 from .shot.cloth import ClothMaterial as ClothMaterial
 from .shot.contact import Contact as Contact

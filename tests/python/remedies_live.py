@@ -23,6 +23,10 @@ def given(name: str, value: Any) -> Act:
     return lambda: setattr(live(), name, value)
 
 
+def touched(**values: Any) -> Act:
+    return lambda: ringlet.Touch("pat", **{"at": (0.0, 0.0, 0.0), **values})
+
+
 def scaled(factor: float) -> Act:
     return given("head", np.diag([factor, factor, factor, 1.0]))
 
@@ -53,5 +57,7 @@ ROWS = [
     Advice("live: fps is {}; must be positive", lambda: live(fps=0.0), lambda: live(fps=24.0)),
     Advice("live: contact is {}; must be at least 0", given("contact", -1.0), given("contact", 0.0)),
     Advice("no shot whose clip could play; open one", lambda: clip_played(None), lambda: clip_played(SHOT)),
+    Advice("live: a hand is at {}; must be three finite numbers", touched(at=(0.0, math.inf, 0.0)), touched()),
+    Advice("live: radius of a hand is {}; must be positive", touched(radius=-1.0), touched(radius=0.02)),
     Advice("there are no locks to move; open a recipe", lambda: scene(hairs=False), lambda: scene(hairs=True)),
 ]

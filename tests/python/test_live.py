@@ -1,6 +1,7 @@
 """Live hair: it hangs as groomed, goes on from where it is, and comes back whatever is done to the head."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ from ringlet.live.rods import VERTICES
 from small_example import RECIPE, write_example
 
 import ringlet
-from ringlet import Groom, Live, Material, UserError, _core
+from ringlet import Curves, Groom, Live, Material, Solver, Strands, Touch, UserError, _core
 
 Array = NDArray[np.float64]
 
@@ -225,6 +226,130 @@ def test_rods_that_are_blown_at_the_head_stay_outside(groom: Groom) -> None:
     soft = Material(bend_scale=0.1)
     assert deepest(Live(groom, soft, contact=0.0, bodies=())) < -0.05
     assert deepest(Live(groom, soft, contact=0.0)) > 0.0
+
+
+def test_a_spring_from_a_vertex_is_in_balance_with_its_strand() -> None:
+    points = np.array([(0.01 * k, 0.002 * (k % 2), 0.0) for k in range(8)])
+    strand = Strands(Curves(points, np.array([0, 8], np.int32), np.zeros(1, np.int64)), Material())
+    targets, stiffness = points.copy(), np.zeros(8)
+    targets[-1] += (0.0, 0.0, 0.01)
+    stiffness[-1] = 1e-4
+    for _ in range(200):
+        strand.step(points, 0.1, solver=Solver(newton=20, tolerance=1e-12), springs=(targets, stiffness))
+    gradient = strand.energy(strand.positions)[1]
+    pull = stiffness[:, None] * (targets - strand.positions)
+    assert np.abs(pull).max() > 1e-8
+    assert gradient == pytest.approx(pull, abs=1e-4 * np.abs(pull).max())
+
+
+def pulled(live: Live, by: tuple[float, float, float], steps: int = 12) -> Array:
+    """The tips of locks after a hand has pulled the first one by its tip to a place from there, (count, 3)."""
+    tip = live.rods[0, -1]
+    for share in np.linspace(0.0, 1.0, steps):
+        live.touch = Touch("pull", tuple(tip + share * np.array(by)))
+        assert live.step() == ""
+    return live.rods[:, -1]
+
+
+def is_back(live: Live, seconds: float = 1.0) -> bool:
+    """Whether hair that is let go is within 2 mm of its groom, on a head at rest, after some seconds."""
+    live.touch = None
+    for _ in range(round(seconds / live.dt)):
+        assert live.step() == ""
+    return bool(np.abs(live.positions - live.groom.locks.points).max() < 2e-3)
+
+
+def test_a_hand_pulls_the_nearest_lock_and_it_returns(groom: Groom) -> None:
+    live = Live(groom)
+    before, by = live.rods[:, -1], (0.01, -0.01, 0.015)
+    moved = np.linalg.norm(pulled(live, by) - before, axis=1)
+    assert live.rods[0, -1] - before[0] == pytest.approx(by, abs=1e-3)
+    assert moved[0] > 2.0 * moved[1:].max()
+    live.touch = None
+    live.step()
+    assert np.linalg.norm(live.rods[0, -1] - before[0]) < 0.8 * moved[0]
+    assert is_back(live)
+
+
+def test_neighbours_follow_a_lock_that_is_pulled(groom: Groom) -> None:
+    near = replace(groom, locks=groom.locks.take(np.array([0, 0, 4])))
+    near.locks.ids[:] = 0, 1, 2
+    near.locks.points[near.locks.offsets[1] : near.locks.offsets[2]] += (0.004, 0.0, 0.0)
+    live = Live(near)
+    before = live.rods[:, -1]
+    moved = np.linalg.norm(pulled(live, (0.02, 0.0, 0.0), 3) - before, axis=1)
+    assert moved[1] > 5.0 * moved[2]
+    assert moved[1] > 5e-4
+
+
+def test_a_lock_is_pulled_as_far_as_its_wire_reaches(groom: Groom) -> None:
+    live = Live(groom)
+    pulled(live, (0.0, 0.0, 3.0), 24)
+    rod, length = live.rods[0], groom.locks.lengths()[0]
+    assert 0.8 * length < np.linalg.norm(rod[-1] - rod[0]) < length
+    assert is_back(live)
+
+
+def test_a_comb_takes_hair_along(groom: Groom) -> None:
+    live = Live(groom)
+    before = live.rods
+    way, middle = np.array((0.0, 0.0, 0.02)), before[0, 5]
+    for share in np.linspace(-1.0, 1.0, 8):
+        live.touch = Touch("comb", tuple(middle + share * way), radius=0.05)
+        assert live.step() == ""
+    moved = (live.rods - before)[:, 5] @ way / np.linalg.norm(way)
+    assert moved[0] > 5e-3
+    assert moved[0] == moved.max()
+    assert is_back(live)
+
+
+def test_a_palm_presses_hair_down_and_stays_outside_the_head(groom: Groom) -> None:
+    live, scalp = Live(groom), groom.scalp
+    solid = _core.Solid(np.ascontiguousarray(scalp.points, np.float64), scalp.triangles)
+    at, radius = live.rods[0, -1], 0.03
+    for _ in range(12):
+        live.touch = Touch("pat", tuple(at), radius)
+        assert live.step() == ""
+    free = live.rods[:, 3:].reshape(-1, 3)
+    assert np.linalg.norm(free - at, axis=1).min() > radius - 1e-3
+    assert solid.above(free)[0].min() > -1e-3
+    assert is_back(live)
+    for _ in range(12):  # on the scalp, where there is no place for a palm
+        live.touch = Touch("pat", tuple(live.rods[0, 0]), radius)
+        assert live.step() == ""
+    assert solid.above(live.rods[:, 3:].reshape(-1, 3))[0].min() > -1e-3
+    assert is_back(live)
+
+
+@pytest.mark.parametrize("does", ["pull", "comb", "pat"])
+def test_a_hand_that_is_thrown_lets_go(groom: Groom, does: Any) -> None:
+    live = Live(groom)
+    tip = live.rods[0, -1]
+    live.touch = Touch(does, tuple(tip))
+    assert live.step() == ""
+    live.touch = Touch(does, (5.0, 0.0, 2.0))
+    note = live.step()
+    assert "the hand was thrown" in note and note.endswith("it let go") and "\n" not in note
+    live.touch = Touch(does, tuple(tip))  # it has not been taken away
+    for _ in range(24):
+        assert live.step() == ""
+    assert np.abs(live.positions - groom.locks.points).max() < 2e-3
+
+
+@pytest.mark.parametrize(
+    "values", [{"at": (0.0, np.nan, 0.0)}, {"at": (0.0, 0.0)}, {"radius": np.inf}, {"radius": 0.0}]
+)
+def test_what_is_no_place_of_a_hand_is_refused(values: dict[str, Any]) -> None:
+    with pytest.raises(UserError, match=r"^live: .*hand is .*; must be"):
+        Touch("pull", **{"at": (0.0, 0.0, 0.0), **values})
+
+
+def test_a_hand_lets_go_of_a_lock_that_is_no_longer_there(groom: Groom) -> None:
+    live = Live(groom)
+    pulled(live, (0.01, 0.0, 0.0))
+    live.groom = replace(groom, locks=groom.locks.take(np.arange(1, len(groom.locks))))
+    assert live.step() == ""
+    assert np.isfinite(live.positions).all()
 
 
 def test_locks_that_are_lost_begin_again(groom: Groom) -> None:

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 from pages import page, serving
+from ringlet.live.rods import VERTICES
 from ringlet.viewer.play import live_hair
 from ringlet.viewer.play.head import MOTIONS, Head, Motion, clip_motion
 from ringlet.viewer.play.live_hair import LiveHair
@@ -305,6 +306,30 @@ def test_the_hand_and_buttons_move_the_head_on_all_pages(folder: Path) -> None:
         leader.receive("live", wind="front")
         leader.send(kind="hold_head", turn=[None, 0.0, 0.0])  # NaN, as JSON says it
         assert trouble(leader) == "message: turn[0] is None; must be a number"
+
+
+def test_a_hand_pulls_hair_on_all_pages_and_lets_go(folder: Path) -> None:
+    with serving(folder) as client, page(client) as leader, page(client, "two") as other:
+        leader.receive("measured")
+        leader.send(kind="go_live", on=True)
+        still = other.receive("rods")["points"].reshape(-1, VERTICES, 3)
+        tip = still[0, -1].astype(float)
+
+        def way() -> float:
+            """How far the tip is from where it rests [m]."""
+            return float(np.linalg.norm(other.receive("live_step")["points"].reshape(still.shape)[0, -1] - tip))
+
+        assert way() < 1e-5
+        leader.send(kind="touch_hair", does="pull", at=tip.tolist())
+        other.send(kind="touch_hair", does="pat", at=(tip + 0.01).tolist())  # does not lead
+        leader.send(kind="touch_hair", does="pull", at=(tip + (0.0, 0.0, 0.02)).tolist())
+        while way() < 0.01:
+            pass
+        leader.send(kind="touch_hair", does=None)
+        while way() > 0.002:
+            pass
+        leader.send(kind="touch_hair", does="pull", at=[0.0, None, 0.0])  # NaN, as JSON says it
+        assert trouble(leader) == "message: at[1] is None; must be a number"
 
 
 def test_without_a_shot_no_clip_plays(folder: Path) -> None:

@@ -72,6 +72,7 @@ export class App {
     });
     const presets = new PresetTool(model, viewer);
     presets.opened = () => this.tools.layDown();
+    live.buttons.prepend(this.tools.hand.button);
     this.lock.busy = () => this.tools.busy;
     bindViewKeys(viewer);
     const viewbar = new Viewbar(model, viewer, this.tools.brush, () => this.name);

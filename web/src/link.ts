@@ -4,7 +4,7 @@ import { tokenOf } from "./address";
 import { decode, encode } from "./codec";
 import { type FromPage, type FromServer, VERSION } from "./protocol";
 
-export type Presence = Extract<FromPage, { kind: "introduce" | "look" | "point" | "hold_head" }>;
+export type Presence = Extract<FromPage, { kind: "introduce" | "look" | "point" | "hold_head" | "touch_hair" }>;
 
 const FIRST_WAIT = 300;
 const LONGEST_WAIT = 5000;

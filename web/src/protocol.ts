@@ -480,6 +480,14 @@ export interface HoldHead {
   shift?: [number, number, number];
 }
 
+/** A hand touches live hair, or lets go. */
+export interface TouchHair {
+  kind: "touch_hair";
+  does: "pull" | "comb" | "pat" | null;
+  at?: [number, number, number];
+  radius?: number;
+}
+
 /** Plays a motion of the head of live hair; ``walk`` and ``clip``, that of the shot, stop where they play. */
 export interface MoveHead {
   kind: "move_head";
@@ -1003,6 +1011,7 @@ export type FromPage =
   | Watch
   | GoLive
   | HoldHead
+  | TouchHair
   | MoveHead
   | Blow
   | TakeSnapshot

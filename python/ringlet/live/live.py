@@ -18,6 +18,7 @@ from ringlet.data.mesh import Mesh
 from ringlet.data.rigid import rotation_vector
 from ringlet.live.hanging import HangingRods
 from ringlet.live.rods import VERTICES, Rods, Wire, places, vertex_places
+from ringlet.live.touch import PRESSED, Hand, Touch, TouchedRods
 from ringlet.shot.material import Material
 from ringlet.shot.solver import Solver
 from ringlet.sim.core import Vector
@@ -92,6 +93,7 @@ class Live:
         self._bodies, self._still = (groom.scalp,) if bodies is None else tuple(bodies), tuple(still)
         self._grids: list[tuple[_core.DistanceGrid, bool]] = []
         self._ease = np.zeros(0)
+        self._hand = Hand()
         self._set_groom(groom)
         self.reset()
 
@@ -125,6 +127,15 @@ class Live:
     @wind.setter
     def wind(self, wind: Sequence[float]) -> None:
         self._wind = _vector(wind, "wind")
+
+    @property
+    def touch(self) -> Touch | None:
+        """What a hand does to the hair in the next step; None: it lets go."""
+        return self._hand.touch
+
+    @touch.setter
+    def touch(self, touch: Touch | None) -> None:
+        self._hand.take(touch)
 
     @property
     def contact(self) -> float:
@@ -211,10 +222,13 @@ class Live:
     def step(self) -> str:
         """Advances by 1 / fps [s], in which the head goes to ``head``.
 
-        Returns a sentence about what was cut off, empty where nothing was: a head that is thrown farther than 0.3 m or
-        60° carries its hair along rigidly, and locks that are lost begin again as groomed.
+        Returns a sentence about what was cut off, empty where nothing was. A head that is thrown farther than 0.3 m or
+        60° carries its hair along rigidly. A hand that is thrown as far lets go, until ``touch`` is None. Locks that are
+        lost begin again as groomed.
         """
         note = self._catch_up()
+        touch, cut_off = self._hand.begin()
+        note = note or cut_off
         start, end = self._pose, self._head
         held = _moved(self._rods.points, end)
         report = self._strands.step(
@@ -224,8 +238,10 @@ class Live:
             wind=self._wind,
             forces=self._support @ end[:3, :3].T,
             solver=SOLVER,
-            planes=self._planes(start, end),
+            planes=self._planes(start, end, touch),
+            springs=self._hand.springs(touch, self._touched(held)) if touch else None,
         )
+        self._hand.end()
         positions, velocities = self._strands.positions, self._strands.velocities
         self._grid.share(positions, self._strands.masses, self._held, start, end, self.dt, SHARE, KEEP, velocities)
         self._pose = end
@@ -239,13 +255,36 @@ class Live:
             note = note or f"{lost.sum()} of {lost.size} locks were lost and begin again as groomed"
         return note
 
-    def _planes(self, start: Array, end: Array) -> Planes | None:
+    def _touched(self, held: Array) -> TouchedRods:
+        """The rods that a hand may touch in a step after which what is held is there."""
+        edges = np.linalg.norm(np.diff(self.groomed_rods, axis=1, prepend=self.groomed_rods[:, :1]), axis=2)
+        inertia = np.where(self._held == 0, self._strands.masses / self.dt**2, 0.0)
+        return TouchedRods(
+            self._rods.curves.ids,
+            self.rods,
+            held[::VERTICES],
+            edges.cumsum(axis=1) / self._rods.rise[:, None],
+            inertia.reshape(-1, VERTICES),
+        )
+
+    def _outside(self, touch_at: ArrayLike, radius: float, pose: Array) -> Array:
+        """Where a palm is that is kept outside the bodies that move with the head [m]."""
+        at = np.array(touch_at, np.float64)
+        for grid in (grid for grid, moves in self._grids if moves):
+            distance, away = grid.at(((at - pose[:3, 3]) @ pose[:3, :3])[None])
+            at += max(0.0, radius + self._clearance.max() - distance[0]) * (pose[:3, :3] @ away[0])
+        return at
+
+    def _planes(self, start: Array, end: Array, touch: Touch | None) -> Planes | None:
         """The planes that keep the rods outside bodies in a step in which the head goes from one pose to another."""
-        if not self._grids:
+        if not self._grids and touch is None:
             return None
         positions, planes, still = self._strands.positions, _core.BodyPlanes(len(self._held)), np.eye(4)
         for grid, moves in self._grids:
             planes.add(grid, start if moves else still, end if moves else still, positions, self._clearance)
+        if touch is not None and touch.does == "pat":
+            palm = [self._outside(at, touch.radius, pose) for at, pose in ((self._hand.start, start), (touch.at, end))]
+            planes.add_ball(*palm, touch.radius, PRESSED, positions, self._clearance)
         near = (planes.gaps < NEAR) & (self._held == 0)
         return planes.normals, planes.offsets, np.where(near, FIRM / self.dt**2 * self._strands.masses, 0.0)
 

@@ -17,6 +17,7 @@ from ringlet.shot.variation import VARIATIONS
 from ringlet.sim.core import Vector, assign, step_settings
 
 Planes = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]
+Springs = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
 @dataclass
@@ -116,12 +117,14 @@ class Strands:
         forces: NDArray[np.floating] | None = None,
         solver: Solver | None = None,
         planes: Planes | None = None,
+        springs: Springs | None = None,
     ) -> dict[str, NDArray[np.float64]]:
         """Advances by ``dt`` [s]; held vertices end where ``targets`` [m], shape (n, 3), has them.
 
         forces: on each vertex besides gravity and air [N], shape (n, 3)
         planes: one in front of each vertex: unit normals, shape (n, 3), distances from the origin along them [m], and
                 stiffnesses against what comes behind [N/m], shapes (n,). Only material frames have them
+        springs: one from each vertex: targets [m], shape (n, 3), and stiffnesses [N/m], shape (n,)
         Returns the report of every strand, one array of shape (count,) per quantity (see ``_core.REPORT``).
         """
         solver = solver or Solver()
@@ -130,6 +133,7 @@ class Strands:
             self._no_forces if forces is None else np.ascontiguousarray(forces, np.float64),
             step_settings(solver, dt, gravity, wind),
             planes,
+            springs,
         )
         return dict(zip(_core.REPORT, rows.T, strict=True))
 

@@ -249,7 +249,7 @@ class Session:
 
     def handle(self, page: Page, message: protocol.FromPage) -> None:
         """Handles a message of a page and acknowledges it; raises UserError for a request that fails."""
-        if isinstance(message, protocol.HoldHead):
+        if isinstance(message, protocol.HoldHead | protocol.TouchHair):
             if self.pages.leads(page):
                 self._live.hold(message)
             return

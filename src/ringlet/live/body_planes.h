@@ -20,6 +20,12 @@ struct BodyPlanes {
     // Takes a body, with vertices where they start the step. Each gets the plane that touches the surface `clearance` [m] away
     // from the body, nearest to where it starts; of several bodies that of the least gap.
     void add(const DistanceGrid &body, const Pose &from, const Pose &to, View<Vec3> positions, View<double> clearance);
+
+    // The same of a ball whose centre goes from one place to another. What is inside comes out by `most` [m] at most.
+    void add_ball(const Vec3 &from, const Vec3 &to, double radius, double most, View<Vec3> positions, View<double> clearance);
+
+private:
+    void check(View<Vec3> positions, View<double> clearance) const;
 };
 
 } // namespace ringlet

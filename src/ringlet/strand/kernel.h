@@ -79,6 +79,11 @@ struct PlaneArrays {
     const double *normal = nullptr, *offset = nullptr, *stiffness = nullptr;
 };
 
+// A spring from each vertex to a target, ½ k ‖x − p‖², part of the inertia. Null: there are none.
+struct SpringArrays {
+    const double *target = nullptr, *stiffness = nullptr;
+};
+
 // Model and state of all strands, as pointers (see strand/model.h and strand/state.h).
 struct StrandArrays : StrandCoefficients<const double *> {
     const int *offsets;
@@ -87,7 +92,8 @@ struct StrandArrays : StrandCoefficients<const double *> {
     const double *targets, *forces;
     double *positions, *velocities, *normals, *twist, *directors;
     double *last_positions, *last_velocities, *last_strains, *last_dt;
-    PlaneArrays planes; // of steps without contact, with a material frame
+    PlaneArrays planes;   // of steps without contact, with a material frame
+    SpringArrays springs; // of steps without contact
 };
 
 // Strands that one call of a kernel steps together, one per lane; `strands` are their numbers.

@@ -120,7 +120,7 @@ std::vector<double> stabilising_stiffness(const StrandModel &model, const Strand
 }
 
 void step_strands(const StrandModel &model, StrandState &state, View<Vec3> targets, View<Vec3> forces, const StrandStep &step,
-                  std::vector<StrandReport> &reports, const StrandPlanes &planes) {
+                  std::vector<StrandReport> &reports, const StrandPlanes &planes, const StrandSprings &springs) {
     if (int(targets.size()) != model.vertex_count() || int(forces.size()) != model.vertex_count())
         throw std::invalid_argument("strands: targets and forces do not fit the model");
     reports.assign(model.strand_count(), StrandReport{});
@@ -132,6 +132,11 @@ void step_strands(const StrandModel &model, StrandState &state, View<Vec3> targe
         if (step.continuation != Continuation::material_frame)
             throw std::invalid_argument("strands: only material frames have planes");
         arrays.planes = {planes.normal.data()->data(), planes.offset.data(), planes.stiffness.data()};
+    }
+    if (!springs.target.empty()) {
+        if (int(springs.target.size()) != model.vertex_count() || springs.stiffness.size() != springs.target.size())
+            throw std::invalid_argument("strands: springs do not fit the model");
+        arrays.springs = {springs.target.data()->data(), springs.stiffness.data()};
     }
     for_each_group(model, [&](StrandGroup group, void *workspace) {
         StrandReport group_reports[max_lanes];

@@ -37,10 +37,16 @@ struct StrandPlanes {
     View<double> offset, stiffness;
 };
 
+// A spring from each vertex to a target [m], of a stiffness [N/m] that may be 0; see SpringArrays.
+struct StrandSprings {
+    View<Vec3> target;
+    View<double> stiffness;
+};
+
 // One time step. `targets` are the positions of held vertices at its end [m] (rows of free vertices are not read), `forces`
 // external forces on the vertices [N]. One report per strand. The result does not depend on the number of threads.
 void step_strands(const StrandModel &model, StrandState &state, View<Vec3> targets, View<Vec3> forces, const StrandStep &step,
-                  std::vector<StrandReport> &reports, const StrandPlanes &planes = {});
+                  std::vector<StrandReport> &reports, const StrandPlanes &planes = {}, const StrandSprings &springs = {});
 
 // Elastic energy [J] at these positions with relaxed material frames, and its gradient by the free vertices [N] (rows of held
 // vertices are zero). The Hessian is that of Newton's method, for one strand alone: dense, row-major, over 3 unknowns per

@@ -108,9 +108,10 @@ void add_elastic(const GatheredGroup<Objective> &group, const StrandLane &strand
     }
 }
 
-// Whether gravity and forces alone do work on the strand: its held vertices rest, and so does the air. (Backward Euler only.)
+// Whether gravity and forces alone do work on the strand: its held vertices rest, and so does the air, and no spring pulls.
+// (Backward Euler only.)
 template <class Objective> bool is_isolated(const GatheredGroup<Objective> &group, const StrandLane &strand) {
-    if (group.step.integrator != Integrator::backward_euler) return false;
+    if (group.step.integrator != Integrator::backward_euler || group.arrays.springs.stiffness != nullptr) return false;
     const GroupMemory<Objective> &memory = group.memory;
     for (int k = 0; k < 3; ++k) {
         if (group.step.wind[k] != 0.0) return false;

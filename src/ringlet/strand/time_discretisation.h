@@ -16,7 +16,7 @@ template <class Objective> TimeIntegrator<Pack> integrator_of_lanes(const Gather
     return TimeIntegrator<Pack>::of_step(group.step.dt, lag);
 }
 
-// Inertia of the vertices, with gravity, mass damping, drag and external forces: ½ a ‖x − y‖².
+// Inertia of the vertices, with gravity, mass damping, drag, external forces and springs: ½ a ‖x − y‖².
 template <class Objective> void set_inertia(GatheredGroup<Objective> &group, const TimeIntegrator<Pack> &integrator) {
     const StrandArrays &arrays = group.arrays;
     const LaneGather &gather = group.gather;
@@ -34,6 +34,11 @@ template <class Objective> void set_inertia(GatheredGroup<Objective> &group, con
         for (int k = 0; k < 3; ++k)
             row.inertia_target[k] =
                 inertia.target(position[k], velocity[k], group.step.gravity[k], group.step.wind[k], force[k]);
+        if (arrays.springs.stiffness == nullptr) continue;
+        const Pack stiffness = gather.scalar(arrays.springs.stiffness, i, 0.0);
+        const Pack share = select(stiffness > 0.0, stiffness / (row.inertia + stiffness), Pack{});
+        row.inertia = row.inertia + stiffness;
+        row.inertia_target = row.inertia_target + share * (gather.vector(arrays.springs.target, i) - row.inertia_target);
     }
 }
 

@@ -34,6 +34,8 @@ export class LiveHair {
   readonly button = iconButton("live", "Live hair (L): it moves with the head", () => this.toggle());
   readonly line = h("div", { class: "live-line", role: "note", hidden: true });
   private readonly rate = h("output", { class: "rate", "aria-label": "Live steps a second" });
+  /** Buttons of what is done to the hair. */
+  readonly buttons = h("div", { class: "motions", role: "group", "aria-label": "Motions" });
   private readonly motions = MOTIONS.map(([motion, label, title]) =>
     h("button", { type: "button", class: "quiet", title, "data-motion": motion, onclick: () => this.model.say({ kind: "move_head", motion }) }, label),
   );
@@ -54,7 +56,8 @@ export class LiveHair {
     private readonly viewer: Viewer,
   ) {
     this.button.setAttribute("aria-pressed", "false");
-    this.line.append(h("div", { class: "motions", role: "group", "aria-label": "Motions" }, ...this.motions, this.wind), CAUTION, this.rate, this.cut);
+    this.buttons.append(...this.motions, this.wind);
+    this.line.append(this.buttons, CAUTION, this.rate, this.cut);
     this.wind.addEventListener("change", () => model.say({ kind: "blow", side: this.wind.value as Blow["side"] }));
     bindKey({ section: "View", keys: "L", does: "let hair move live, or put it at rest", on: plainKey("l"), run: () => this.toggle() });
     model.on("live", () => this.turned());

@@ -195,6 +195,12 @@ export class Hair {
     return locks && points && carrying && motions ? { locks, points, rods: carrying.rods, motions } : null;
   }
 
+  /** Where the points of locks are seen, also while rods carry them. */
+  get seen(): Float32Array | null {
+    const { carried } = this;
+    return carried ? seen(carried, this.ease?.from ?? null, this.shareLeft) : this.placed;
+  }
+
   /** The share that is left of how far hair was seen from rest. */
   private get shareLeft(): number {
     return this.ease ? shareLeft((performance.now() - this.ease.since) / 1000) : 0;

@@ -57,13 +57,19 @@ class LiveHair:
         """Goes on with another scene, if hair moves live."""
         self._scene = scene
 
-    def hold(self, message: protocol.HoldHead) -> None:
-        """A hand holds the head in a pose, or lets go."""
-        self._hand.held = None if message.turn is None else (message.turn, message.shift)
+    def hold(self, message: protocol.HoldHead | protocol.TouchHair) -> None:
+        """A hand holds the head in a pose, touches the hair, or lets go."""
+        if isinstance(message, protocol.HoldHead):
+            self._hand.held = None if message.turn is None else (message.turn, message.shift)
+        elif message.does is None:
+            self._hand.touch = None
+        else:
+            began = self._hand.touch[0] if self._hand.touch is not None else message
+            self._hand.touch = (began if began.does == message.does else message, message)
 
     def let_go(self) -> None:
-        """The hand that holds the head lets go."""
-        self._hand.held = None
+        """The hand lets go of head and hair."""
+        self._hand.held = self._hand.touch = None
 
     def move_head(self, motion: str) -> None:
         """Plays a motion of the head; one that goes on is stopped where it plays. Raises UserError for no clip."""

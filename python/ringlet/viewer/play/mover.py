@@ -14,7 +14,7 @@ from ringlet import sim
 from ringlet.api.live import head_motion, live_shot
 from ringlet.data.errors import UserError
 from ringlet.groom import Groom
-from ringlet.live import Live
+from ringlet.live import Live, Touch
 from ringlet.shot import Shot
 from ringlet.viewer import protocol
 from ringlet.viewer.play.head import MOTIONS, Head, clip_motion
@@ -58,11 +58,13 @@ class Hand:
     """What is done to live hair, on one thread, until the next step takes it over on another.
 
     held:    pose in which a hand has the head: rotation vector [rad] and shift [m]; None: it has let go
+    touch:   what a hand does to the hair as it begins and now, relative to the origin of the groom; None: nothing
     motions: names of those that were asked for since the last step
     side:    that wind blows from; empty for none
     """
 
     held: tuple[Vector, Vector] | None = None
+    touch: tuple[protocol.TouchHair, protocol.TouchHair] | None = None
     motions: queue.SimpleQueue[str] = field(default_factory=queue.SimpleQueue)
     side: str = ""
 
@@ -77,6 +79,7 @@ class Mover:
         self.scene, self._failed = scene, failed
         self.live = live = live_shot(scene.shot, scene.groom) if scene.shot is not None else Live(scene.groom)
         self.head = Head(neck(scene.groom))
+        self._began: protocol.TouchHair | None = None
         self._gust, self._time, self._wind = np.zeros(3), 0.0, np.array(live.wind)
 
     def change(self, now: LiveScene) -> bool:
@@ -105,7 +108,17 @@ class Mover:
         self._gust += (1.0 - math.exp(-seconds / WIND_RISE)) * (blows - self._gust)
         self.live.wind = tuple((self._wind + self._gust).tolist())
         self.live.head = self.head.transform
+        self._touch(hand.touch)
         return self.live.step()
+
+    def _touch(self, touch: tuple[protocol.TouchHair, protocol.TouchHair] | None) -> None:
+        """A hand that begins does so where it began, wherever it has gone since the last step."""
+        began, now = touch or (None, None)
+        if began is not self._began:
+            self.live.touch, self._began, now = None, began, began
+        if now is not None and now.does is not None:
+            at = np.array(now.at) + self.scene.groom.origin
+            self.live.touch = Touch(now.does, tuple(at.tolist()), now.radius)
 
     def _play(self, name: str) -> None:
         groom, shot = self.scene.groom, self.scene.shot

@@ -54,7 +54,7 @@ from ringlet.viewer.protocol.groom import (
     Numbers,
 )
 from ringlet.viewer.protocol.lights import Lamp, Rig
-from ringlet.viewer.protocol.live import Blow, GoLive, HoldHead, Live, LiveStep, MoveHead, Rods
+from ringlet.viewer.protocol.live import Blow, GoLive, HoldHead, Live, LiveStep, MoveHead, Rods, TouchHair
 from ringlet.viewer.protocol.message import (
     VERSION,
     Arranged,
@@ -281,6 +281,7 @@ __all__ = [
     "Take",
     "TakeSnapshot",
     "Timeline",
+    "TouchHair",
     "Trouble",
     "Try",
     "Unsculpt",

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, TypeAdapter
 
 from ringlet.data import limits
-from ringlet.viewer.protocol.live import Blow, GoLive, HoldHead, MoveHead
+from ringlet.viewer.protocol.live import Blow, GoLive, HoldHead, MoveHead, TouchHair
 from ringlet.viewer.protocol.message import (
     Coordinate,
     File,
@@ -355,6 +355,7 @@ FromPage = Annotated[
     | Watch
     | GoLive
     | HoldHead
+    | TouchHair
     | MoveHead
     | Blow
     | ReviewMessage,
@@ -363,4 +364,4 @@ FromPage = Annotated[
 FROM_PAGE: TypeAdapter[FromPage] = TypeAdapter(FromPage)
 
 # Messages of presence: the latest of each counts, so that they are neither acknowledged nor sent again.
-PRESENCE = (Introduce, Point, Look, HoldHead)
+PRESENCE = (Introduce, Point, Look, HoldHead, TouchHair)

@@ -30,6 +30,20 @@ class HoldHead(Message):
     shift: Position = (0.0, 0.0, 0.0)
 
 
+class TouchHair(Message):
+    """A hand touches live hair, or lets go.
+
+    does:   what it does; None to let go
+    at:     where it is [m]
+    radius: of a comb, or of the palm [m]
+    """
+
+    kind: Literal["touch_hair"] = "touch_hair"
+    does: Literal["pull", "comb", "pat"] | None
+    at: Position = (0.0, 0.0, 0.0)
+    radius: float = Field(default=0.04, gt=0.0, le=0.5)
+
+
 class MoveHead(Message):
     """Plays a motion of the head of live hair; ``walk`` and ``clip``, that of the shot, stop where they play."""
 
