@@ -720,6 +720,8 @@ CURVES = [
     Advice("deformable curves are written at rest; leave them out",
         line(f"convert groom.usdc out.usdc --deformable {SHOT} --frames 1:2"),
         line(f"convert groom.usdc out.usdc --deformable {SHOT}")),
+    Advice("is no archive, which is what Unreal imports; must end in .abc",
+        line("convert groom.usdc out.usdc --unreal"), line("convert groom.usdc out.abc --unreal")),
     Advice("has no {}; leave --only out, or ask for its {}", line("convert groom.usdc out.hair --only hairs"),
         line("convert groom.usdc out.hair --only guides")),
 ]  # fmt: skip

@@ -63,7 +63,7 @@ from ringlet.data.share import share
 from ringlet.data.texture import Texture
 from ringlet.groom.rebind import rebind
 from ringlet.groom.several import join_grooms
-from ringlet.io.alembic import _library as library
+from ringlet.io.alembic.library import library
 from ringlet.io.texture import read_texture
 from ringlet.io.usd.host_meshes import PolygonMesh
 from ringlet.shot import Collider, parse_shot

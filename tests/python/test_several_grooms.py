@@ -15,6 +15,8 @@ from ringlet.data.groom import GROOM, Groom
 from ringlet.data.mesh import Mesh
 from ringlet.data.pigment import ROUGHNESS, USUAL_FIBER, of_fiber
 from ringlet.groom.several import with_each
+from ringlet.io import open_scene
+from ringlet.io.unreal import closest_guides
 from ringlet.picture.strands import split
 from small_example import RECIPE, SHOT, write_head
 
@@ -141,6 +143,19 @@ def test_a_groom_file_keeps_each_groom_and_hairs_have_a_prim_each(project, recip
     locks = UsdGeom.PrimvarsAPI(stage.GetPrimAtPath("/groom/locks")).GetPrimvar("groom_group_id").Get()
     assert list(np.unique(locks)) == [0, 1]
     np.testing.assert_allclose(io.read_hairs(hair).points, make_hairs(read).curves.points, atol=1e-6)
+
+
+@pytest.mark.parametrize("on_demand", [False, True])
+def test_hairs_of_each_groom_name_a_lock_of_it(project, recipe, tmp_path, on_demand):
+    ringlet.write_groom(ringlet.build_groom(recipe), tmp_path / "groom.usdc")
+    ringlet.write_hairs(tmp_path / "groom.usdc", tmp_path / "hair.usdc", on_demand=on_demand)
+    with open_scene(tmp_path / "hair.usdc") as scene:
+        ((guides, ids),) = ((one, ids) for one, ids in zip(scene.sets, scene.groom_ids, strict=True) if one.guide)
+        groups = dict(zip(ids.tolist(), guides.group_ids.tolist(), strict=True))
+        for one, closest in zip(scene.sets, closest_guides(scene), strict=True):
+            if closest is not None:
+                assert [groups[id] for id in closest.tolist()] == one.group_ids.tolist()
+    assert sorted(set(groups.values())) == [0, 1]
 
 
 def test_hairs_of_each_groom_have_their_own_fiber_in_pictures(project, recipe):

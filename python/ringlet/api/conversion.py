@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ringlet import io
 from ringlet.data import limits
@@ -42,6 +40,7 @@ def convert(
     fraction: float = 1.0,
     wider: bool = False,
     points: int | None = None,
+    unreal: bool = False,
     deformable: Path | str | None = None,
 ) -> dict[str, Any]:
     """Converts a file of hair to the format that the suffix of the target names.
@@ -55,9 +54,11 @@ def convert(
     only:     leaves the other curves out
     bodies:   writes surfaces too, where the format holds any
     frames:   first and last frame; all by default. A format of one pose holds that of the first, or the rest pose
-    fraction: share of the curves to keep, in (0, 1], the same ones every time; with ``wider`` these make up by their
-              width for those left out
+    fraction: share of the hairs to keep, in (0, 1], or of the guides where there are no hairs; the same ones every
+              time. With ``wider`` these make up by their width for those left out
     points:   points of each curve, evenly spaced along it; as they are by default
+    unreal:   writes an archive that Unreal imports as a groom: without surfaces, of at most 255 points a hair and 32 a
+              guide
     deformable: a shot, whose ``[strands]`` is the material: writes guides at rest, or hairs where there are none, as
               elastic rods of the AOUSD proposal for deformable bodies, with surfaces as colliders
 
@@ -68,6 +69,8 @@ def convert(
     if not 0.0 < fraction <= 1.0:
         raise UserError(f"fraction is {fraction:g}; must be more than 0 and at most 1")
     kind = io.format_of(target)
+    if unreal and kind.name != "Alembic":
+        raise UserError(f"{target}: is no archive, which is what Unreal imports; must end in .abc")
     rod = None if deformable is None else _rod(deformable, target, frames)
     source_space = source_space_of(source, source_unit, source_up)
     with io.open_scene(source, source_space) as scene:
@@ -78,7 +81,7 @@ def convert(
         space = StageSpace(unit or default.meters_per_unit, up or default.up_axis, scene.space.fps)
         chosen = frames_within(scene.frames, frames, source)
         scene = replace(scene, frames=chosen, bodies=scene.bodies if bodies else [])
-        scene.sets = [_thinned(one, fraction, wider, points) for one in _chosen(scene, only, source)]
+        scene.sets = _thinned(_chosen(scene, only, source), fraction, wider, points)
         has_unit = io.format_of(source).space is None
         remedy = "write the file again, in its unit" if has_unit else "give the unit of the file with --from-unit"
         for one in scene.sets if kind.name == "USD" else ():
@@ -86,11 +89,15 @@ def convert(
         one_pose = frames is not None and not kind.several
         if one_pose:
             scene = scene.posed(scene.frames[0])
+        lost = list[str]()
+        if unreal:
+            scene, lost = io.for_unreal(scene)
         if rod is None:
-            written, lost = io.write_scene(scene, target, space)
+            written, unheld = io.write_scene(scene, target, space)
         else:
-            written, lost = _simulated(scene)
+            written, unheld = _simulated(scene)
             io.write_deformable_scene(written, rod, Path(target), space)
+        lost += unheld
         if one_pose:
             lost.insert(0, f"{kind.name} holds one pose: that of frame {scene.frames[0]:g}")
     return {
@@ -156,31 +163,20 @@ def _chosen(scene: HairScene, only: str | None, source: Path | str) -> list[Curv
     return chosen
 
 
-def _thinned(one: CurveSet, fraction: float, wider: bool, points: int | None) -> CurveSet:
-    """A share of the curves, with other numbers of points."""
-    curves, steps = one.curves, list[Callable[[NDArray], NDArray]]()
+def _thinned(sets: list[CurveSet], fraction: float, wider: bool, points: int | None) -> list[CurveSet]:
+    """A share of the curves, with other numbers of points; all guides of hairs, which name them by their rows."""
     if fraction < 1.0:
-        order = Random(SEED, "convert").uniform(curves.ids)
-        kept = np.sort(np.argsort(order, kind="stable")[: max(1, round(fraction * len(curves)))])
-        rows = curves.point_rows(kept)
-        steps.append(lambda at: at[rows])
-        scale = np.float32(len(curves) / len(kept) if wider else 1.0)
-        curves = curves.take(kept)
-        for values in (curves.curve, curves.point):
-            if "width" in values:
-                values["width"] = values["width"] * scale
-    if points is not None:
-        resampling = Resampling(curves, points)
-        steps.append(resampling.values)
-        curves = resampling.curves(curves)
-    if one.motion is None or not steps:
-        return replace(one, curves=curves)
-    motion = one.motion
+        hairs = any(not one.guide for one in sets)
+        sets = [one if one.guide and hairs else _share(one, fraction, wider) for one in sets]
+    return sets if points is None else [Resampling(one.curves, points).curve_set(one) for one in sets]
 
-    def thinned(frame: float) -> NDArray[np.floating]:
-        at = motion(frame)
-        for step in steps:
-            at = step(at)
-        return at
 
-    return replace(one, curves=curves, motion=thinned)
+def _share(one: CurveSet, fraction: float, wider: bool) -> CurveSet:
+    """A share of the curves, the same ones every time; wider by as much, if asked for."""
+    order = Random(SEED, "convert").uniform(one.curves.ids)
+    kept = np.sort(np.argsort(order, kind="stable")[: max(1, round(fraction * len(one.curves)))])
+    rows, curves, motion = one.curves.point_rows(kept), one.curves.take(kept), one.motion
+    for values in (curves.curve, curves.point) if wider else ():
+        if "width" in values:
+            values["width"] = values["width"] * np.float32(len(one.curves) / len(kept))
+    return replace(one, curves=curves, motion=None if motion is None else (lambda frame: motion(frame)[rows]))

@@ -47,6 +47,10 @@ def convert(
     ] = 1.0,
     wider: Wider = False,
     points: Annotated[int | None, points_option("Points of each curve, evenly spaced along it.")] = None,
+    unreal: Annotated[
+        bool,
+        typer.Option("--unreal", help="Write an archive that Unreal imports as a groom."),
+    ] = False,
     deformable: Annotated[
         Path | None,
         typer.Option(
@@ -61,7 +65,7 @@ def convert(
 ) -> None:
     """Converts hair between USD, Alembic, .hair, TressFX .tfx and OBJ, and reports what the format cannot hold.
 
-    Examples: ringlet convert hair.usdc hair.abc · ringlet convert mohawk.tfx mohawk.usdc --from-unit cm --points 16
+    Examples: ringlet convert hair.usdc hair.abc --unreal · ringlet convert mohawk.tfx mohawk.usdc --from-unit cm
     """
     if frame is not None:
         if frames is not None:
@@ -80,6 +84,7 @@ def convert(
         fraction=fraction,
         wider=wider,
         points=points,
+        unreal=unreal,
         deformable=deformable,
     )
     counts = {name: done[name] for name in ("hairs", "guides", "points", "bodies", "frames")}

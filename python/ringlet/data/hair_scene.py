@@ -85,10 +85,11 @@ class HairScene:
     def groom_ids(self) -> list[NDArray[np.int32]]:
         """Unreal's ``groom_id`` of the curves of each set, which differ over the whole file.
 
-        They are the ids of the curves where these are different numbers of 31 bits, else counted from 0.
+        They are the ids of the curves where these are different numbers from 0 to 2²⁴, else counted from 0. Unreal
+        keeps the ids of guides in single precision.
         """
         every = np.concatenate([np.empty(0, np.int64), *(one.curves.ids for one in self.sets)])
-        if len(np.unique(every)) < len(every) or np.abs(every).max(initial=0) >= 2**31:
+        if len(np.unique(every)) < len(every) or every.min(initial=0) < 0 or every.max(initial=0) > 2**24:
             every = np.arange(len(every))
         ends = np.cumsum([len(one.curves) for one in self.sets], dtype=np.int64).tolist()
         return [every[start:end].astype(np.int32) for start, end in zip([0, *ends], ends, strict=False)]

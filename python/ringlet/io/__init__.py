@@ -3,6 +3,7 @@
 from ringlet.io.formats import format_of, open_scene, write_scene
 from ringlet.io.read import read_clip, read_curves, read_head, read_mesh, read_space
 from ringlet.io.texture import read_texture
+from ringlet.io.unreal import for_unreal
 from ringlet.io.usd.cache import CacheFile, CacheWriter, cache_groom_path, is_cache, open_cache, read_cache, write_cache
 from ringlet.io.usd.camera import camera_paths, read_camera
 from ringlet.io.usd.check import problems
@@ -35,6 +36,7 @@ __all__ = [
     "cache_groom_path",
     "camera_paths",
     "check_target",
+    "for_unreal",
     "format_of",
     "has_hairs_on_demand",
     "head_path",

@@ -16,14 +16,14 @@ from ringlet.data.hair_scene import CurveSet, HairScene
 from ringlet.data.mesh import Mesh
 from ringlet.data.resampling import Resampling
 from ringlet.data.stage import StageSpace
-from ringlet.io.alembic import SCHEMA, UNREAL, holds, open_alembic, write_alembic
+from ringlet.io import unreal
+from ringlet.io.alembic import SCHEMA, holds, open_alembic, write_alembic
 from ringlet.io.hair import read_hair, write_hair
 from ringlet.io.obj import read_obj_curves, write_obj_curves
 from ringlet.io.tfx import SIZES as TFX_SIZES
 from ringlet.io.tfx import read_tfx, write_tfx
 from ringlet.io.usd.scene import open_usd_scene, unwritten_in_usd, write_usd_scene
 
-UNREAL_POINTS = 255  # of a curve, which Unreal numbers by a byte
 METRES, CENTIMETRES = StageSpace(), StageSpace(0.01)
 # Shapes of one value of attributes that have a type of their own in USD or Alembic.
 ROWS = {name: () for name in ("groom_group_id", "groom_guide", "skinprim", "guide_curve_index", "clumpid")}
@@ -161,9 +161,11 @@ def _unheld(scene: HairScene, kind: Format) -> list[str]:
     named = [pair for one in scene.sets for pair in (*one.curves.curve.items(), *one.curves.point.items())]
     if names := sorted({name for name, values in named if not holds(values)} - SCHEMA):
         lost.append(f"{kind.name} holds numbers of 32 bits in rows of up to three: without {', '.join(names)}")
-    if (most := max((int(one.curves.counts.max()) for one in scene.sets), default=0)) > UNREAL_POINTS:
-        lost.append(f"Unreal takes at most {UNREAL_POINTS} points of a curve, and there are {most}: add --points")
-    if names := sorted({name for one in scene.sets for name in one.curves.point} & {*UNREAL} - {"groom_color"}):
+    if (most := max((int(one.curves.counts.max()) for one in scene.sets), default=0)) > unreal.POINTS:
+        lost.append(f"Unreal takes at most {unreal.POINTS} points of a curve, and there are {most}: add --unreal")
+    if names := sorted(
+        {name for one in scene.sets for name in one.curves.point} & {*unreal.ATTRIBUTES} - {"groom_color"}
+    ):
         lost.append(f"{kind.name} holds Unreal's attributes for whole curves: without {', '.join(names)} of points")
     lost += _materials(scene, kind)
     meshes = [mesh for mesh, _ in scene.bodies]

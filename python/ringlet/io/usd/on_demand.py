@@ -229,11 +229,11 @@ class OnDemand:
 
     def sets(self) -> list[tuple[str, Curves, slice]]:
         """Names and hairs of each prim, without points, and their rows among the points of all."""
-        found, first = [], 0
+        found, first, lock = [], 0, 0
         for prim, part in zip(on_demand_prims(self._source), self.hairs.parts, strict=True):
             end = first + int(part.curves.offsets[-1])
-            found.append((prim.GetName(), part.curves, slice(first, end)))
-            first = end
+            found.append((prim.GetName(), _of_all_locks(part.curves, lock), slice(first, end)))
+            first, lock = end, lock + len(part.axis)
         return found
 
 
@@ -280,11 +280,12 @@ def _read(source: Source, prim: Usd.Prim, groom: Groom, first_lock: int) -> Hair
 def _joined(members: dict[str, Hairs], locks: list[slice]) -> Curves:
     """Hairs of all grooms, whose locks are rows of those of all."""
     each = zip((hairs.curves for hairs in members.values()), locks, strict=True)
-    sets = [
-        replace(curves, curve={**curves.curve, "lock": curves.curve["lock"] + np.int32(rows_of.start)})
-        for curves, rows_of in each
-    ]
-    return Curves.joined(sets)
+    return Curves.joined([_of_all_locks(curves, rows_of.start) for curves, rows_of in each])
+
+
+def _of_all_locks(curves: Curves, first: int) -> Curves:
+    """Hairs of one groom, with the rows of their locks among those of all grooms, which begin at ``first``."""
+    return replace(curves, curve={**curves.curve, "lock": curves.curve["lock"] + np.int32(first)})
 
 
 def _layout_values(prim: Usd.Prim) -> dict[str, NDArray]:
