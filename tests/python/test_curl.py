@@ -379,6 +379,15 @@ def test_too_few_points_for_the_curls_are_refused_with_the_number_to_set():
         curled("pitch = 0.2", points=60)
 
 
+def test_locks_get_the_points_that_their_curls_need_where_none_are_given():
+    def points(curl):
+        recipe = f"ringlet = 2\n[guides]\nfile='g.usda'\n[curl]\n{curl}"
+        return int(make_groom(parse_recipe(recipe), sheet(), drawn_guides=straight()).locks.counts.max())
+
+    assert points("curls = 2") == 64 and points("curls = 40") == 12 * 40
+    assert points("preset = '4A'\nkeep = 'length'") < points("preset = '4A'")  # of a shape that the curl shortens
+
+
 def test_too_few_points_for_more_curls_than_points_allow_are_refused_with_the_bound():
     with pytest.raises(UserError, match=r"too few for .* curls .*; must be at most 10000, so ask for fewer than 10 "):
         curled("curls_per_cm = 20", Curves.from_list([10.0 * straight(1)[0]]), points=60)

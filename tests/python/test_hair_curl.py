@@ -25,6 +25,7 @@ start = 0
 irregularity = 0
 [hairs]
 per_lock = 40
+points = 240
 lock_radius = { value = "1 mm", ramp = [[0, 1], [1, 1]] }
 frizz = 0
 stray = 0
@@ -162,6 +163,22 @@ def test_the_curl_of_hairs_survives_that_locks_swing():
 def test_too_few_points_for_the_coil_of_hairs_are_refused_with_a_number():
     with pytest.raises(UserError, match=r"hairs.points is 240: too few for .* turns of hairs.coil .* set it to \d+"):
         make_hairs(groom("[hairs.coil]\npitch = '1 mm'\n"))
+
+
+def test_hairs_get_the_points_that_their_coil_needs_where_none_are_given():
+    made = groom("[hairs.coil]\npitch = '1 mm'\n", RECIPE.replace("per_lock = 40\npoints = 240\n", "per_lock = 4\n"))
+    assert make_hairs(made).curves.counts.max() > 8 * made.locks.lengths().max() / 1e-3
+
+
+def test_families_wind_at_a_pitch_of_their_own():
+    families = THIN.replace("count = 1", "count = 6").replace("value = 1", "value = 0")
+    curl = "[hairs.curl]\ndrift = 0\nslips = 0\npitch_spread = 0.3\n"
+    made = groom(families + curl, RECIPE.replace("1 mm", "0.01 mm"))
+    phase = slips(bundles(made), made)[:, :, INNER]
+    more = np.diff(np.unwrap(2.0 * np.pi * phase, axis=2)[:, :, [0, -1]], axis=2)[..., 0] / (2.0 * np.pi)
+    turns = 12.0 * 119 / 239  # of the lock there
+    assert np.abs(more).max() < 0.31 * turns and np.abs(more).max() > 0.15 * turns
+    assert all(len(np.unique(np.round(of_lock, 2))) <= 8 for of_lock in more)  # with the lock itself
 
 
 def test_cached_hairs_with_a_curl_equal_rebuilt_hairs():

@@ -128,6 +128,15 @@ def test_cached_hairs_of_a_strand_follow_its_width():
 
 
 @pytest.mark.parametrize(
+    ("shape", "least"),
+    [(BRAID, 107), ("[[shape]]\nop = 'knot'\nwindings = 6", 14 * 6), ("[[shape]]\nop = 'cornrow'\nwidth = 0.5", 150)],
+)
+def test_strands_get_the_points_that_their_weave_needs_where_none_are_given(shape, least):
+    locks = groom("strands = 3\npattern = 'rows'" if "cornrow" in shape else "strands = 3", shape, "").locks
+    assert least <= locks.counts.min() == locks.counts.max() < 10 * least
+
+
+@pytest.mark.parametrize(
     ("sections", "shape", "locks", "message"),
     [
         ("gap = 0.2", BRAID, "count = 100\npoints = 120", "no section has strands; set locks.sections.strands"),
@@ -138,7 +147,12 @@ def test_cached_hairs_of_a_strand_follow_its_width():
             "points = 120",
             "weaves 3 strands; a fishtail has 5, 7, 9 or 11",
         ),
-        ("strands = 3", BRAID, "points = 60", "locks.points is 60: too few for the 5.3 turns of braid; set it to 107"),
+        (
+            "strands = 3",
+            BRAID,
+            "points = 60",
+            "is 60: too few for the 5.3 turns of braid; leave it out, or set it to 107",
+        ),
         ("gap = 4", "", "count = 100\npoints = 8", "leaves no hair: its gap is as wide as its size, or its mask"),
     ],
 )

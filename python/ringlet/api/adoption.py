@@ -289,7 +289,7 @@ def _fitted(text: str, path: Path, scalp: Mesh, guides: Curves, target: NDArray[
     target: points of the locks as they were [m], evenly spaced, shape (locks, k, 3)
     """
     recipe = grooms.parse_recipe(text, path)
-    assert isinstance(recipe.guides, Drawn)
+    assert isinstance(recipe.guides, Drawn) and recipe.locks.points is not None
     surface, points = Scalp(scalp, None), recipe.locks.points
     context = Context(recipe.seed, surface, "curl", points)
     wanted = _packed(target)

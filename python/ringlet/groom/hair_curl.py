@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 from scipy.fft import rfft
 
+from ringlet.data import limits
 from ringlet.data.curves import Curves
 from ringlet.data.errors import Fix, UserError
 from ringlet.data.quantities import Quantity, Ramped, Section, Varied
@@ -17,7 +18,8 @@ from ringlet.data.random import Random, soft_threshold
 from ringlet.groom.values import Values
 
 MOST_FAMILIES = 64
-LEAST_POINTS = 6  # of a hair, per turn of its own coil
+LEAST_POINTS, GOOD_POINTS = 6, 8  # of a hair, per turn of its own coil
+STEP = 16  # of the points of hairs: where they follow the lengths of locks, most changes of these keep them
 TINY = float(np.finfo(np.float32).tiny)
 BLOCK = 64  # locks whose points and spectra stay in the cache
 FEWEST_TURNS = 1.5  # of a lock below which it has no coil
@@ -53,6 +55,10 @@ class HairCurl(Section):
     )
     slip: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
         default=Varied(value=0.3), description="size of a slip, in turns"
+    )
+    pitch_spread: Annotated[Varied, Quantity("", 0.0, 0.9)] = Field(
+        default=Varied(value=0.0),
+        description="how much the pitch differs between families, relative to that of the lock: 0.2 is ±20 %",
     )
     coherence: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
         default=Varied(value=0.5), description="fraction of drift and slips that the hairs of a family share"
@@ -133,8 +139,9 @@ def curl_layout(
 ) -> tuple[dict[str, NDArray], NDArray[np.float64]]:
     """Arrays of the kernel's curl (src/ringlet/groom/hairs.h), and how far families wander at knots, (hairs, 2·knots).
 
-    Turns of a coil and the wander of its phase count per metre of lock, and ``start`` is that phase at the root;
-    ``with_turns`` puts them together.
+    Turns of a coil and the wander of its phase count per metre of lock, and ``start`` is that phase at the root.
+    ``spread`` is by how much the hair has more turns than its lock, relative to these. ``with_turns`` puts them
+    together.
     """
     count, points, lock = len(hairs.ids), len(u), hairs.lock
     family, to = families(family_values, hairs)
@@ -146,6 +153,7 @@ def curl_layout(
         "coil": np.zeros((count, 4)),
         "phase": np.zeros((count, knots)),
         "start": np.zeros(count),
+        "spread": np.zeros(count),
         **{ramp: np.zeros(points) for ramp in ("escaping", "relaxing", "tight", "opening")},
     }
     wander = np.zeros((count, 2 * knots))
@@ -161,6 +169,8 @@ def curl_layout(
         settings = curl_values.settings
         assert isinstance(settings, HairCurl)
         layout["slip"] = _slips(curl_values, hairs, family, knots)
+        chance = 2.0 * Random(curl_values.seed, "hairs/pitch").uniform(family) - 1.0
+        layout["spread"] = curl_values("pitch_spread")[lock] * chance
         away = Random(curl_values.seed, "hairs/escape").normals(hairs.ids, 2)
         layout["escape"] = curl_values("escape")[lock, None] * away
         layout["relax"] = curl_values.per_hair("relax", lock, hairs.ids)
@@ -170,7 +180,7 @@ def curl_layout(
         assert isinstance(settings, HairCoil)
         layout["coil"], layout["phase"], layout["start"] = _coils(coil_values, hairs, family, knots)
         layout["opening"] = settings.width.along(u)
-    for name in ("slip", "escape", "relax", "family"):
+    for name in ("slip", "spread", "escape", "relax", "family"):
         layout[name][~hairs.free] = 0.0
     layout["coil"][~hairs.free, :2] = 0.0
     wander[~hairs.free] = 0.0
@@ -219,13 +229,28 @@ def _coils(values: Values, hairs: Placed, family: NDArray, knots: int) -> tuple[
     return np.stack(coil, axis=1), phase, start[:, 0]
 
 
-def with_turns(layout: dict[str, NDArray], lengths: NDArray) -> dict[str, NDArray]:
-    """The arrays of ``curl_layout`` as the kernel takes them, for hairs of these lengths [m], shape (hairs,)."""
+def with_turns(layout: dict[str, NDArray], lengths: NDArray, turns: NDArray) -> dict[str, NDArray]:
+    """The arrays of ``curl_layout`` as the kernel takes them, for hairs of these lengths [m], shape (hairs,).
+
+    turns: of the lock of each hair, shape (hairs,)
+    """
     lengths = lengths.astype(np.float32)
     coil, start = layout["coil"].copy(), layout["start"][:, None]
     coil[:, 2] *= lengths
-    rest = {name: values for name, values in layout.items() if name != "start"}
+    rest = {name: values for name, values in layout.items() if name not in ("start", "spread")}
+    if layout["spread"].any():
+        more = (layout["spread"] * turns).astype(np.float32)[:, None]
+        rest["slip"] = rest["slip"] + more * np.linspace(0.0, 1.0, rest["slip"].shape[1], dtype=np.float32)
     return {**rest, "coil": coil, "phase": start + lengths[:, None] * layout["phase"]}
+
+
+def points_needed(values: Values, lengths: NDArray) -> int:
+    """Points that the coils of hairs need on locks of these lengths [m], shape (locks,)."""
+    settings = values.settings
+    assert isinstance(settings, HairCoil)
+    closest = (1.0 - settings.pitch.vary) * values("pitch") / (1.0 + values("irregularity"))
+    most = GOOD_POINTS * float((lengths / np.maximum(closest, 1e-9)).max(initial=0.0))
+    return min(STEP * int(np.ceil(most / STEP)), limits.POINTS)
 
 
 def check_points(coil: NDArray[np.float32], points: int) -> None:
@@ -235,8 +260,8 @@ def check_points(coil: NDArray[np.float32], points: int) -> None:
         good = int(np.ceil(10 * most))
         raise UserError(
             f"hairs.points is {points}: too few for {most:.1f} turns of hairs.coil ({points / most:.1f} points a "
-            f"turn); set it to {good} (at least {int(np.ceil(LEAST_POINTS * most))}), or raise "
-            "hairs.coil.pitch",
+            f"turn); leave it out, or set it to {good} (at least {int(np.ceil(LEAST_POINTS * most))}), or "
+            "raise hairs.coil.pitch",
             [Fix(("hairs", "points"), good)],
         )
 

@@ -66,7 +66,7 @@ def place_hairs(groom: Groom, settings: HairSettings, fraction: float, wider: bo
     root_triangle[~hairs.free] = locks.curve["root_triangle"]
     root_barycentric[~hairs.free] = locks.curve["root_barycentric"]
 
-    u = np.linspace(0.0, 1.0, settings.points or int(locks.counts.max()))
+    u = np.linspace(0.0, 1.0, points_of_hairs(groom, settings))
     attributes: dict[str, NDArray] = {
         "lock": lock,
         "guide_id": locks.ids[lock],
@@ -92,6 +92,15 @@ def place_hairs(groom: Groom, settings: HairSettings, fraction: float, wider: bo
         layout["frizz"] = _felted(settings, own, hairs, layout["frizz"])
     layout |= _curl(values, layout, hairs, u)
     return curves, layout | _neighbours(settings, own, curves, hairs, roots, u)
+
+
+def points_of_hairs(groom: Groom, settings: HairSettings) -> int:
+    """Points of each hair."""
+    if settings.points is not None:
+        return settings.points
+    most = int(groom.locks.counts.max())
+    coil = hair_values(groom, settings).get("coil")
+    return most if coil is None else max(most, hair_curl.points_needed(coil, groom.locks.lengths()))
 
 
 def _rooted(groom: Groom, places: NDArray) -> tuple[NDArray[np.int32], NDArray[np.float64]]:

@@ -40,7 +40,10 @@ class HairSettings(Section):
         description="fraction of the hairs that grow: a number, map, region or expression; all when absent",
     )
     points: int | None = Field(
-        default=None, ge=2, le=10_000, description="points per hair; those of the lock when absent"
+        default=None,
+        ge=2,
+        le=10_000,
+        description="points per hair; those of the lock when absent, or what a `coil` of its own needs",
     )
     lock_radius: Annotated[Ramped, Quantity("m", 0.0, 0.1)] = Field(
         default=Ramped(value=0.0012, ramp=[(0, 1), (0.5, 0.8), (1, 0.5)]),

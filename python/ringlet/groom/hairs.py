@@ -16,7 +16,7 @@ from ringlet.data.quantities import Varied
 from ringlet.deform import Hairs, root_frames
 from ringlet.groom import felt, hair_curl
 from ringlet.groom.color import hair_colors
-from ringlet.groom.hair_layout import lock_joins, place_hairs
+from ringlet.groom.hair_layout import lock_joins, place_hairs, points_of_hairs
 from ringlet.groom.hair_settings import HairSettings, fiber_settings, hair_settings, hair_values
 from ringlet.groom.scalp import axes
 from ringlet.groom.shares import LAID, REACH
@@ -83,11 +83,12 @@ def _with_lengths(hairs: Hairs, locks: Curves) -> dict[str, Any]:
     layout = hairs.layout
     if not layout["curl"]:
         return layout
-    curl = hair_curl.with_turns(
-        layout["curl"], locks.lengths()[hairs.curves.curve["lock"]] * (layout["tip"] - layout["join"])
-    )
+    lock, window = hairs.curves.curve["lock"], hair_curl.turn_points(locks)
+    turns = np.where(window > 0, locks.counts / np.maximum(window, 1), 0.0)
+    lengths = locks.lengths()[lock] * (layout["tip"] - layout["join"])
+    curl = hair_curl.with_turns(layout["curl"], lengths, turns[lock])
     hair_curl.check_points(curl["coil"], len(layout["profile"]))
-    return {**layout, "curl": curl, "window": hair_curl.turn_points(locks)}
+    return {**layout, "curl": curl, "window": window}
 
 
 def _key(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -> bytes:
@@ -95,7 +96,8 @@ def _key(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -> 
     locks, scalp, fiber = groom.locks, groom.scalp, fiber_settings(groom)
     section = fiber.values(locks, scalp)
     shape = settings.model_dump_json(), fiber.model_dump_json(include={"flatness", "twist_pitch", "vary_hairs", "seed"})
-    digest = blake2b(f"{shape} {groom.region} {fraction} {wider}".encode(), digest_size=16)
+    points = points_of_hairs(groom, settings)
+    digest = blake2b(f"{shape} {groom.region} {fraction} {wider} {points}".encode(), digest_size=16)
     for array in (
         locks.ids,
         locks.offsets,

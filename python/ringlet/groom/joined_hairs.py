@@ -46,6 +46,8 @@ def _with_points(groom: Groom, points: int | None, share: float) -> Groom:
     """The same groom with another number of points of each hair."""
 
     def thinned(hairs: dict[str, Any], locks: Curves) -> dict[str, Any]:
+        if points is None and hairs.get("points") is None and hairs.get("coil"):
+            return hairs
         own = points or hairs.get("points") or int(locks.counts.max())
         count = own if hairs.get("coil") else max(min(own, LEAST_POINTS), round(share * own))
         return {**hairs, "points": count}

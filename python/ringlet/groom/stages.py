@@ -15,7 +15,8 @@ from ringlet.groom.conflicts import lengthened
 from ringlet.groom.edits import Edit, Edits
 from ringlet.groom.hairs import HairMemory
 from ringlet.groom.load import stage_names
-from ringlet.groom.operators import Context, Drawn, Operator, Resample
+from ringlet.groom.operators import Context, Drawn, Operator
+from ringlet.groom.operators.operator import Uncurled
 from ringlet.groom.operators.shape import Displacement, Shape
 from ringlet.groom.recipe import Recipe
 from ringlet.groom.scalp import Scalp
@@ -131,7 +132,7 @@ def curling(recipe: Recipe, adopted: bool) -> Stages:
     """The curl and edits of it; adopted: drawn guides have what a curl leaves of them."""
     residual = [("residual", Residual(amount=recipe.guides.residual))] if isinstance(recipe.guides, Drawn) else []
     return [
-        ("curl", recipe.curl or Resample(points=recipe.locks.points)),
+        ("curl", recipe.curl or Uncurled()),
         *(residual if adopted else []),
         *_edits(recipe, "groom", "edits"),
     ]

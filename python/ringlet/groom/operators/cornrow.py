@@ -16,7 +16,7 @@ from ringlet.data.groom import CORE, SECTION, STRAND_RADIUS, TIED
 from ringlet.data.quantities import Quantity, Varied
 from ringlet.groom import felt, weave
 from ringlet.groom.helpers import Names
-from ringlet.groom.operators.operator import UP, Context, arc_lengths, evenly, grid, unit
+from ringlet.groom.operators.operator import UP, Context, arc_lengths, evenly, grid, unit, with_lock_points
 from ringlet.groom.operators.woven import JOIN, Braided, Woven
 from ringlet.groom.rows import Row, drawn_rows, middle_rows
 from ringlet.groom.sections import Division
@@ -75,8 +75,8 @@ class Cornrow(Woven):
 
     def apply(self, curves: Curves, context: Context) -> Curves:
         """Returns the curves with the strands of sections braided along their rows, rooted at the front of these."""
-        fine = self.resampled(curves, context)
-        leaders, rows = self.leaders(fine, self.weights(fine, context)[:, :1] > 0.5)
+        self.check_strands(curves, context)
+        leaders, rows = self.leaders(curves, self.weights(curves, context)[:, :1] > 0.5)
         if context.sections is None or not rows:
             return curves
         division = context.sections.divide(context.scalp, context.seed, context.helper, context.density)
@@ -88,6 +88,8 @@ class Cornrow(Woven):
         values = {k: context.values(self, k, leaders) for k in ("feed", "off", "length", "gravity_bend")}
         lain = [lines[int(section)].shortened(off) for section, off in zip(leaders.ids, values["off"], strict=True)]
 
+        whole = np.array([row.length for row in lain]) + values["length"]
+        fine = with_lock_points(curves, context, self.points_for(whole, leaders, rows, context))
         shapes, points = grid(fine).copy(), grid(fine).shape[1]
         for k, (row, of) in enumerate(zip(lain, rows, strict=True)):
             tail = _tail(row, row.points, values["length"][k], values["gravity_bend"][k])

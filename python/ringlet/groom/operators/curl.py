@@ -15,7 +15,7 @@ from ringlet.data.errors import Fix, UserError
 from ringlet.data.groom import STRAND_RADIUS
 from ringlet.data.quantities import Quantity, Ramp, Ramped, Varied, along, refuse
 from ringlet.data.random import soft_threshold
-from ringlet.groom.operators.operator import Context, Operator, at_even_lengths, packed
+from ringlet.groom.operators.operator import LOCK_POINTS, Context, Operator, at_even_lengths, packed
 from ringlet.groom.operators.phase_groups import PhaseGroups
 from ringlet.groom.operators.tied import after_ties, with_heads
 from ringlet.groom.presets import PRESETS, Preset
@@ -23,6 +23,7 @@ from ringlet.groom.scalp import axes
 
 RAMP_SAMPLES = 128
 NOISE_VALUES = 24
+LEAST_POINTS, GOOD_POINTS = 6, 12  # of a lock, per turn
 MAX_EVENTS = 12  # largest number of switchbacks, and of skips, of a lock
 NEVER = 1e9
 MAX_OPENING = 10.0  # largest factor on the width where a curl opens or closes
@@ -169,12 +170,12 @@ class Curl(Operator):
         def values(name: str) -> NDArray[np.float64]:
             return context.values(self, name, curves)
 
-        ids, u, points = curves.ids, np.linspace(0.0, 1.0, RAMP_SAMPLES), context.lock_points
+        ids, u = curves.ids, np.linspace(0.0, 1.0, RAMP_SAMPLES)
         wound = after_ties(curves)
         lengths = wound.lengths()
         turns, rate = self.turns(curves, lengths, context, u)
         width = values("width")
-        self._check_points(turns * curves.lengths() / lengths, width, lengths, points)
+        points = self._points(turns * curves.lengths() / lengths, width, curves, lengths, context.lock_points)
         # The irregularity itself varies per lock: some locks are neat, others are not.
         irregularity = (values("irregularity") * (0.5 + context.random("neatness").uniform(ids)))[:, None]
         noise = {
@@ -220,19 +221,23 @@ class Curl(Operator):
         offsets = offsets_from_counts(np.full(len(ids), points))
         return Curves(curled, offsets, ids, curves.curve, at_even_lengths(curves, points))
 
-    def _check_points(self, turns: NDArray, width: NDArray, lengths: NDArray, points: int) -> None:
-        """Raises UserError for fewer than 6 points a curl."""
+    def _points(self, turns: NDArray, width: NDArray, curves: Curves, lengths: NDArray, given: int | None) -> int:
+        """Points of a lock: as given, or as the closest curl needs; raises UserError for fewer than 6 a curl."""
         if self.keep == "length" and self.curls is None:  # the curled part of the shape is shorter
             turns = turns / np.hypot(1.0, np.pi * width * turns / lengths)
-        if (most := float(turns.max())) > points / 6.0:
-            good = int(np.ceil(12 * most))
-            remedy = f"set it to {good} (at least {int(np.ceil(6 * most))}), or ask for fewer curls"
-            if 12 * most > limits.POINTS:
-                remedy = f"must be at most {limits.POINTS}, so ask for fewer than {points // 6} curls"
+        most = float(turns.max())
+        good = int(np.ceil(GOOD_POINTS * most))
+        points = given or min(max(good, LOCK_POINTS, int(curves.counts.max())), limits.POINTS)
+        if most > points / LEAST_POINTS:
+            least = int(np.ceil(LEAST_POINTS * most))
+            remedy = f"leave it out, or set it to {good} (at least {least}), or ask for fewer curls"
+            if good > limits.POINTS:
+                remedy = f"must be at most {limits.POINTS}, so ask for fewer than {points // LEAST_POINTS} curls"
             raise UserError(
                 f"locks.points is {points}: too few for {most:.1f} curls ({points / most:.1f} points a curl); {remedy}",
                 [Fix(("locks", "points"), good)] if good <= limits.POINTS else [],
             )
+        return points
 
     def _phase(self, curves: Curves, context: Context) -> NDArray[np.float64]:
         """Initial phase of each curl [degrees], shape (count,): random per lock plus a field that neighbours share."""

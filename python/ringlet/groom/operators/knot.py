@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import Annotated, Literal
 
 import numpy as np
@@ -58,32 +59,48 @@ class Knot(Sectioned):
         default=Varied(value=1.0), description="fraction of the sections that are wound right-handed"
     )
 
+    def points_needed(self, curves: Curves, context: Context) -> int:
+        """Points that the windings and the twists of the strands need."""
+        leaders, rows = self.leaders(curves, self.weights(curves, context) > 0.0)
+        turns = [wound.turns for wound in self._wound(grid(curves), leaders, rows, context)]
+        return int(np.ceil(GOOD_POINTS * max(turns, default=0.0)))
+
     def strands(
         self, curves: Curves, leaders: Curves, rows: Sequence[NDArray[np.integer]], context: Context
     ) -> Iterator[Strands]:
         """The strands of each section as the rope of a knot."""
+        shapes = grid(curves)
+        for wound in self._wound(shapes, leaders, rows, context):
+            self._check_points(wound.turns, shapes.shape[1], context)
+            along = np.linspace(0.0, wound.length, shapes.shape[1])[None]
+            points = wound.rope.around(at_lengths(wound.line[None], along)[0], shapes[wound.rows, 0])
+            ends = np.clip((1.0 - np.linspace(0.0, 1.0, felt.KNOTS)) * wound.length / wound.end, 0.0, 1.0)
+            yield Strands(
+                wound.rows,
+                points,
+                {STRAND_RADIUS: wound.radius, JOIN: JOINED * wound.start},
+                profile=np.sqrt(ends * (2.0 - ends)),
+            )
+
+    def _wound(
+        self, shapes: NDArray, leaders: Curves, rows: Sequence[NDArray[np.integer]], context: Context
+    ) -> Iterator[Wound]:
+        """The ropes of sections, for a strand of each and the rows of all its strands (count, points, 3) [m]."""
         names = ("width", "height", "windings", "dome", "tuck", "tightness", "start", "right_handed")
         values = {name: context.values(self, name, leaders) for name in names}
         pitch = None if self.pitch is None else context.values(self, "pitch", leaders)
         mirrored = context.random("hand").uniform(leaders.ids) >= values["right_handed"]
-        shapes = grid(curves)
         for k, of in enumerate(rows):
-            width, height, turns, dome, tuck, tightness, start, _ = (values[name][k] for name in names)
-            coil = Coil.fitted(width, height, turns, dome, tuck)
-            roots = shapes[of, 0]
+            width, height, windings, dome, tuck, tightness, start, _ = (values[name][k] for name in names)
+            coil = Coil.fitted(width, height, windings, dome, tuck)
             line = coil.path() * [1.0, -1.0 if mirrored[k] else 1.0, 1.0]
-            base = roots.mean(axis=0)
+            base = shapes[of, 0].mean(axis=0)
             line = on_scalp(line, base, context.scalp.nearest(base[None])[1][0], context.scalp)
             length = float(arc_lengths(line[None])[0, -1])
             twists = 0.0 if len(of) == 1 else (length - coil.rise) / (4.0 * coil.rope if pitch is None else pitch[k])
-            self._check_points(turns + twists, shapes.shape[1], context)
             rope = Rope(coil.rope, len(of), twists, start / length, coil.rise / length)
-            points = rope.around(at_lengths(line[None], np.linspace(0.0, length, shapes.shape[1])[None])[0], roots)
-            ends = np.clip((1.0 - np.linspace(0.0, 1.0, felt.KNOTS)) * length / (END * coil.rope), 0.0, 1.0)
             radius = float(tightness * rope.strand)
-            yield Strands(
-                of, points, {STRAND_RADIUS: radius, JOIN: JOINED * start}, profile=np.sqrt(ends * (2.0 - ends))
-            )
+            yield Wound(of, rope, line, length, windings + twists, radius, start, END * coil.rope)
 
     def _check_points(self, turns: float, points: int, context: Context) -> None:
         """Raises UserError for fewer than LEAST_POINTS points a turn."""
@@ -91,9 +108,30 @@ class Knot(Sectioned):
             least, good = (int(np.ceil(each * turns)) for each in (LEAST_POINTS, GOOD_POINTS))
             raise UserError(
                 f"locks.points is {points}: too few for the {turns:.1f} turns of {context.purpose} and its strands; "
-                f"set it to {good} (at least {least}), or lower its windings",
+                f"leave it out, or set it to {good} (at least {least}), or lower its windings",
                 [Fix(("locks", "points"), good)],
             )
+
+
+@dataclass(frozen=True)
+class Wound:
+    """The rope of one knot.
+
+    rows:   of its strands
+    line:   centre line of the rope [m], shape (k, 3), and its length [m]
+    turns:  windings, and turns of its strands about one another
+    radius: of a strand [m]
+    start:  length over which the strands come together, and that over which the end closes [m]
+    """
+
+    rows: NDArray[np.integer]
+    rope: Rope
+    line: NDArray[np.float64]
+    length: float
+    turns: float
+    radius: float
+    start: float
+    end: float
 
 
 class Rope:

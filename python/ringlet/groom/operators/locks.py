@@ -41,11 +41,12 @@ class Locks(Operator):
         description="painted values: where they are higher, locks stand closer; none grow where they are 0. Sections "
         "and their strands are only where they are over 0",
     )
-    points: int = Field(
-        default=64,
+    points: int | None = Field(
+        default=None,
         ge=4,
         le=limits.POINTS,
-        description="points of a lock, curl included; about 12 per turn simulate well",
+        description="points of a lock, curl included; when absent 12 per turn of the closest curl, which simulate "
+        "well, what its braids, twists and knots need, and at least 64",
     )
     shape_points: int = Field(default=20, ge=4, le=1000, description="points of a lock's shape, before it is curled")
     neighbours: int = Field(default=4, ge=1, le=16, description="number of guides that a lock takes its shape from")

@@ -23,6 +23,7 @@ from ringlet.groom.scalp import Scalp
 from ringlet.groom.sections import Sections
 
 UP = np.array([0.0, 1.0, 0.0])
+LOCK_POINTS = 64  # of a groom guide that needs no more
 
 
 @dataclass(frozen=True)
@@ -32,7 +33,7 @@ class Context:
     seed:        seed of the recipe
     scalp:       surface that the curves grow on
     purpose:     unique name of the operator in the stack, which keys its random numbers
-    lock_points: points of a groom guide
+    lock_points: points of a groom guide; None for as many as operators need
     curves:      helper curves by name
     meshes:      helper meshes by name
     shapes:      the locks before the curl operator; None up to it
@@ -43,7 +44,7 @@ class Context:
     seed: int
     scalp: Scalp
     purpose: str
-    lock_points: int = 64
+    lock_points: int | None = None
     curves: Mapping[str, Curves] = field(default_factory=dict)
     meshes: Mapping[str, Mesh] = field(default_factory=dict)
     shapes: Curves | None = None
@@ -92,6 +93,14 @@ class Operator(Section):
         raise NotImplementedError
 
 
+class Uncurled(Operator):
+    """Gives locks without a curl their points."""
+
+    def apply(self, curves: Curves, context: Context) -> Curves:
+        """Returns the curves with ``lock_points`` points each."""
+        return resampled(curves, context.lock_points) if context.lock_points else with_lock_points(curves, context)
+
+
 def grid(curves: Curves) -> NDArray[np.floating]:
     """Points of curves with equal point counts as an array of shape (count, points, 3)."""
     return curves.points.reshape(len(curves), -1, 3)
@@ -123,9 +132,12 @@ def at_even_lengths(curves: Curves, points: int) -> dict[str, NDArray]:
     return found
 
 
-def with_lock_points(curves: Curves, context: Context) -> Curves:
-    """The curves with ``lock_points`` points each, or as many as the longest has; as they are if they have these."""
-    points = max(context.lock_points, int(curves.counts.max()))
+def with_lock_points(curves: Curves, context: Context, needed: int = LOCK_POINTS) -> Curves:
+    """The curves with ``lock_points`` points each, or as many as the longest has; as they are if they have these.
+
+    needed: points where ``lock_points`` is None, at least LOCK_POINTS
+    """
+    points = max(context.lock_points or max(needed, LOCK_POINTS), int(curves.counts.max()))
     return curves if int(curves.counts.min()) == points else resampled(curves, points)
 
 

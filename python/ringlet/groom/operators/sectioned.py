@@ -67,9 +67,18 @@ class Sectioned(Shape):
 
     def resampled(self, curves: Curves, context: Context) -> Curves:
         """The curves with ``lock_points`` points or more each; raises UserError where no section has strands."""
+        self.check_strands(curves, context)
+        needed = 0 if context.lock_points else self.points_needed(curves, context)
+        return with_lock_points(curves, context, needed)
+
+    def points_needed(self, curves: Curves, context: Context) -> int:
+        """Points of a lock that its strands need."""
+        return 0
+
+    def check_strands(self, curves: Curves, context: Context) -> None:
+        """Raises UserError where no section has strands."""
         if STRAND not in curves.curve or not (curves.curve[STRAND] >= 0).any():
             raise UserError(f"{context.purpose}: no section has strands; set locks.sections.strands, such as 3")
-        return with_lock_points(curves, context)
 
     def leaders(self, curves: Curves, acts: NDArray[np.bool_]) -> tuple[Curves, Sequence[NDArray[np.integer]]]:
         """A strand of each section that an operator acts on, named by the section, and the rows of all its strands.

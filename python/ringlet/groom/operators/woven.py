@@ -92,6 +92,23 @@ class Woven(Ended):
                 narrows if (narrows != 1.0).any() else None,
             )
 
+    def points_needed(self, curves: Curves, context: Context) -> int:
+        """Points that the waves of the longest braid need."""
+        leaders, rows = self.leaders(curves, self.weights(curves, context) > 0.0)
+        return self.points_for(np.array([_length(curves, of) for of in rows]), leaders, rows, context)
+
+    def points_for(
+        self, length: NDArray, leaders: Curves, rows: Sequence[NDArray[np.integer]], context: Context
+    ) -> int:
+        """Points that the waves of braids of these lengths (count,) [m] need."""
+        waves = np.array([weave.waves(self.weaving, len(of)) for of in rows])
+        return int(np.ceil(GOOD_POINTS * (waves * length / self._pitches(leaders, context)).max(initial=0.0)))
+
+    def _pitches(self, leaders: Curves, context: Context) -> NDArray[np.float64]:
+        """Pitch of each braid [m], shape (count,)."""
+        given = None if self.pitch is None else context.values(self, "pitch", leaders)
+        return self.pitch_of(context.values(self, "width", leaders)) if given is None else given
+
     def braids(
         self, curves: Curves, leaders: Curves, rows: Sequence[NDArray[np.integer]], context: Context
     ) -> list[Braided]:
@@ -99,7 +116,7 @@ class Woven(Ended):
         length = np.array([_length(curves, of_section) for of_section in rows])
         values = {k: context.values(self, k, leaders) for k in ("width", "tightness", "start")}
         tail, tie, hold = self.ends(values["width"], leaders, context)
-        pitch = self.pitch_of(values["width"]) if self.pitch is None else context.values(self, "pitch", leaders)
+        pitch = self._pitches(leaders, context)
         depths, mirrored = self.depths(values["width"], leaders, context), self.mirrored(leaders, context)
         radius: dict[tuple, float] = {}
         braids = []
@@ -136,8 +153,8 @@ class Woven(Ended):
         least, good = (int(np.ceil(each * waves * turns)) for each in (LEAST_POINTS, GOOD_POINTS))
         if points < least:
             raise UserError(
-                f"locks.points is {points}: too few for the {turns:.1f} turns of {context.purpose}; set it to {good} "
-                f"(at least {least}), or raise its pitch",
+                f"locks.points is {points}: too few for the {turns:.1f} turns of {context.purpose}; leave it "
+                f"out, or set it to {good} (at least {least}), or raise its pitch",
                 [Fix(("locks", "points"), good)],
             )
 

@@ -26,7 +26,8 @@ def _points(recipe: Recipe, shown: Recipe, display: DisplayGroom) -> float:
     hairs = display.count * _lock_ratio(recipe, shown) * _hairs(recipe) / _hairs(shown)
     if recipe.hairs.density is not None and shown.hairs.density is not None:  # their number is that of the scalp
         hairs = display.count * recipe.hairs.density.value / shown.hairs.density.value
-    return locks * recipe.locks.points + hairs * (recipe.hairs.points or recipe.locks.points)
+    points = recipe.locks.points or int(display.groom.locks.counts.max())
+    return locks * points + hairs * (recipe.hairs.points or points)
 
 
 def _lock_ratio(recipe: Recipe, shown: Recipe) -> float:
