@@ -18,6 +18,7 @@ PROOFS = {  # commands that fail where a proof does
     "fine sphere": ".venv/bin/python -m pytest tests/proof/test_fine_sphere.py",
     "long hair": ".venv/bin/python -m pytest tests/proof/test_long_hair.py",
     "whole demo": ".venv/bin/python -m pytest tests/proof/test_whole_demo.py",
+    "live hour": ".venv/bin/python -m pytest --timeout 0 tests/proof/test_live_hour.py",
     "head script": ".venv/bin/python -m pytest tests/proof/test_head_script.py",
     "sanitizers": "make sanitize",
     "wheel": "make wheel",

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from live_memory import growth
 from pages import page, serving
 from ringlet.live.rods import VERTICES
 from ringlet.viewer.play import live_hair
@@ -370,3 +371,9 @@ def test_a_slider_of_a_shot_reaches_live_hair(folder: Path, monkeypatch: pytest.
         leader.send(kind="set", file="shot", changes=[[["strands", "bend_scale"], 5.0]], gesture=1)
         while not scenes or scenes[-1].shot is None or scenes[-1].shot.strands.bend_scale != 5.0:
             leader.receive("live_step")
+
+
+def test_two_minutes_of_live_hair_leak_nothing(groom: Groom) -> None:
+    """3 000 steps with messages, motions, wind and other grooms; a proof has an hour."""
+    few = replace(groom, locks=groom.locks.take(np.arange(5)))
+    assert growth(groom, few, 3000) < 5e5
