@@ -10,7 +10,18 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, KDTree
 
-from ringlet import Clock, Groom, Live, build_groom, head_motion, live_shot, read_recipe, read_shot, simulate
+from ringlet import (
+    Clock,
+    Groom,
+    Live,
+    build_groom,
+    head_motion,
+    live_shot,
+    read_recipe,
+    read_shot,
+    simulate,
+    trunk_motion,
+)
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "child"
 DEGREE = 5  # of the centre line that radii of coils are measured from
@@ -36,7 +47,7 @@ def run(
     if locks:
         made = made.model_copy(update={"locks": made.locks.model_copy(update={"count": locks})})
     groom, shot = build_groom(made), read_shot(EXAMPLE / "nod.shot.toml")
-    heads = head_motion(groom, (1, frames))
+    heads, trunks = (motion(groom, (1, frames)) for motion in (head_motion, trunk_motion))
     measured: dict[str, Any] = {}
     if newton:
         solver = shot.solver.model_copy(update={"newton": newton})
@@ -44,9 +55,9 @@ def run(
             cache = simulate(shot.model_copy(update={"frames": (1, frames), "solver": solver}), groom)
         expected = of_heads(cache.points.astype(np.float64), heads)
         groom.locks.points[:] = expected[0]
-        measured["of_shot"] = compare(groom, expected, moved(live_shot(shot, groom), heads, clock))
+        measured["of_shot"] = compare(groom, expected, moved(live_shot(shot, groom), heads, trunks, clock))
     else:
-        moved(live_shot(shot, groom), heads, clock)
+        moved(live_shot(shot, groom), heads, trunks, clock)
     measured["still"] = still(live_shot(shot, groom), seconds)
     return clock.result(
         "live",
@@ -59,13 +70,12 @@ def run(
     )
 
 
-def moved(live: Live, heads: Array, clock: Clock) -> Array:
+def moved(live: Live, heads: Array, trunks: Array, clock: Clock) -> Array:
     """Positions of all points in the frame of the head, shape (frames, n, 3)."""
-    live.head = heads[0]
+    live.head, live.trunk = heads[0], trunks[0]
     live.reset()
     points = [live.positions]
-    for head in heads[1:]:
-        live.head = head
+    for live.head, live.trunk in zip(heads[1:], trunks[1:], strict=True):
         with clock("step"):
             live.step()
         with clock("carry"):

@@ -33,6 +33,7 @@ from .api.hairs import measure_hairs as measure_hairs
 from .api.hairs import write_hairs as write_hairs
 from .api.live import head_motion as head_motion
 from .api.live import live_shot as live_shot
+from .api.live import trunk_motion as trunk_motion
 from .api.loops import Loop as Loop
 from .api.loops import empty_loop_time as empty_loop_time
 from .api.loops import recorded_loops as recorded_loops

@@ -1,11 +1,14 @@
 """Live hair: it hangs as groomed, goes on from where it is, and comes back whatever is done to the head."""
 
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from ringlet.api.live import clothes_of
+from ringlet.data.rigid import rotation_vector
 from ringlet.live.rods import VERTICES
 from small_example import RECIPE, write_example
 
@@ -210,6 +213,41 @@ def test_a_head_that_is_dragged_keeps_its_hair_outside(groom: Groom) -> None:
     for _ in range(24):
         live.step()
     assert live.positions - head[:3, 3] == pytest.approx(np.asarray(groom.locks.points, np.float64), abs=2e-3)
+
+
+def test_clothes_go_with_the_trunk_and_push_hair(groom: Groom) -> None:
+    """A ball below the hair that the trunk lifts into it, while the head is still."""
+    tips = Live(groom).rods[:, -1]
+    ball = replace(groom.scalp, points=0.5 * groom.scalp.points + tips[tips[:, 1].argmin()] - (0.0, 0.15, 0.0))
+    live = Live(groom, clothes=[ball])
+    solid = _core.Solid(np.ascontiguousarray(ball.points, np.float64), ball.triangles)
+
+    def deepest() -> float:
+        return float(solid.above(live.rods[:, 3:].reshape(-1, 3) - live.trunk[:3, 3])[0].min())  # type: ignore[index]
+
+    for height in np.linspace(0.0, 0.13, 21):
+        live.trunk = turned(0.0, (0.0, float(height), 0.0))
+        live.step()
+        assert deepest() > 0.0
+    assert np.abs(live.positions - groom.locks.points).max() > 5e-3
+    live.trunk = None
+    for _ in range(72):
+        live.step()
+    assert live.positions == pytest.approx(np.asarray(groom.locks.points, np.float64), abs=1e-3)
+
+
+def test_what_is_below_the_neck_goes_with_the_trunk_of_the_clip(tmp_path: Path) -> None:
+    child = Path(__file__).parents[2] / "examples" / "child"
+    recipe = tmp_path / "child.recipe.toml"
+    recipe.write_text(RECIPE.replace('"head.usda"', f'"{child / "head.usdc"}"\nmesh = "/child/skin"'))
+    groom = ringlet.build_groom(recipe)
+    assert [mesh.name.split("/")[-1] for mesh in clothes_of(groom)] == ["shirt"]
+    heads, trunks = (motion(groom, (1, 26)) for motion in (ringlet.head_motion, ringlet.trunk_motion))
+    angle_of_head, angle_of_trunk = (
+        np.degrees(np.linalg.norm(rotation_vector(of[-1, :3, :3]))) for of in (heads, trunks)
+    )
+    assert angle_of_head > 35.0
+    assert 3.0 < angle_of_trunk < 12.0
 
 
 def test_rods_that_are_blown_at_the_head_stay_outside(groom: Groom) -> None:

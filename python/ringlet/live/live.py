@@ -17,6 +17,7 @@ from ringlet.data.groom import Groom
 from ringlet.data.mesh import Mesh
 from ringlet.data.rigid import rotation_vector
 from ringlet.live.hanging import HangingRods
+from ringlet.live.neck import neck
 from ringlet.live.rods import VERTICES, Rods, Wire, places, vertex_places
 from ringlet.live.touch import PRESSED, Hand, Touch, TouchedRods
 from ringlet.shot.material import Material
@@ -53,8 +54,9 @@ class Live:
 
     groom:    its locks hang still as they are groomed, under the gravity that is given here
     material: of the locks, as ``[strands]`` of a shot has it
-    bodies:   closed meshes that move with the head, and that hair stays out of; by default the scalp
-    still:    those that stay where they are, such as a shirt
+    bodies:   closed meshes that move with the head, and that hair stays out of; by default the scalp. What is below
+              the neck goes with the trunk
+    clothes:  meshes that go with the trunk as a whole, such as a shirt
     gravity:  [m/s²]
     wind:     velocity of the air [m/s]
     fps:      steps a second
@@ -77,7 +79,7 @@ class Live:
         material: Material | None = None,
         *,
         bodies: Sequence[Mesh] | None = None,
-        still: Sequence[Mesh] = (),
+        clothes: Sequence[Mesh] = (),
         gravity: Sequence[float] = GRAVITY,
         wind: Sequence[float] = (0.0, 0.0, 0.0),
         fps: float = 24.0,
@@ -90,7 +92,8 @@ class Live:
         self._groomed_gravity = self._gravity = _vector(gravity, "gravity")
         self._wind = _vector(wind, "wind")
         self._head = self._pose = np.eye(4)
-        self._bodies, self._still = (groom.scalp,) if bodies is None else tuple(bodies), tuple(still)
+        self._trunk: Array | None = None
+        self._bodies, self._clothes = (groom.scalp,) if bodies is None else tuple(bodies), tuple(clothes)
         self._grids: list[tuple[_core.DistanceGrid, bool]] = []
         self._ease = np.zeros(0)
         self._hand = Hand()
@@ -109,6 +112,15 @@ class Live:
     @head.setter
     def head(self, transform: ArrayLike) -> None:
         self._head = _rigid(transform)
+
+    @property
+    def trunk(self) -> Array | None:
+        """The rigid transform of what is below the neck, as ``head``; None, the default: it goes with the head."""
+        return None if self._trunk is None else self._trunk.copy()
+
+    @trunk.setter
+    def trunk(self, transform: ArrayLike | None) -> None:
+        self._trunk = None if transform is None else _rigid(transform)
 
     @property
     def gravity(self) -> Vector:
@@ -223,8 +235,8 @@ class Live:
         """Advances by 1 / fps [s], in which the head goes to ``head``.
 
         Returns a sentence about what was cut off, empty where nothing was. A head that is thrown farther than 0.3 m or
-        60° carries its hair along rigidly. A hand that is thrown as far lets go, until ``touch`` is None. Locks that are
-        lost begin again as groomed.
+        60° carries its hair along rigidly. A hand that is thrown as far lets go, until ``touch`` is None. Locks that
+        are lost begin again as groomed.
         """
         note = self._catch_up()
         touch, cut_off = self._hand.begin()
@@ -244,7 +256,7 @@ class Live:
         self._hand.end()
         positions, velocities = self._strands.positions, self._strands.velocities
         self._grid.share(positions, self._strands.masses, self._held, start, end, self.dt, SHARE, KEEP, velocities)
-        self._pose = end
+        self._pose, self._trunk_pose = end, self._trunk_end
         if self._ease.size:
             self._ease *= np.exp(-self.dt / EASE)
             if np.abs(self._ease).max() < 1e-6:
@@ -279,20 +291,30 @@ class Live:
         """The planes that keep the rods outside bodies in a step in which the head goes from one pose to another."""
         if not self._grids and touch is None:
             return None
-        positions, planes, still = self._strands.positions, _core.BodyPlanes(len(self._held)), np.eye(4)
-        for grid, moves in self._grids:
-            planes.add(grid, start if moves else still, end if moves else still, positions, self._clearance)
+        positions, planes = self._strands.positions, _core.BodyPlanes(len(self._held))
+        above = positions @ start[:3, 1] - start[:3, 3] @ start[:3, 1] > self._neck
+        of_trunk = self._trunk_pose, self._trunk_end
+        for grid, of_head in self._grids:
+            if of_head:
+                planes.add(grid, start, end, positions, np.where(above, self._clearance, -np.inf))
+            planes.add(grid, *of_trunk, positions, np.where(above & of_head, -np.inf, self._clearance))
         if touch is not None and touch.does == "pat":
             palm = [self._outside(at, touch.radius, pose) for at, pose in ((self._hand.start, start), (touch.at, end))]
             planes.add_ball(*palm, touch.radius, PRESSED, positions, self._clearance)
         near = (planes.gaps < NEAR) & (self._held == 0)
-        return planes.normals, planes.offsets, np.where(near, FIRM / self.dt**2 * self._strands.masses, 0.0)
+        stiffness = np.where(near, FIRM / self.dt**2 * self._strands.masses, 0.0)
+        return planes.normals, planes.offsets, stiffness
 
     def reset(self) -> None:
         """Puts the hair at rest as it is groomed, on the head where that is."""
-        self._pose = self._head
+        self._pose, self._trunk_pose = self._head, self._trunk_end
         self._strands.place(_moved(self._rods.points, self._pose))
         self._ease = np.zeros(0)
+
+    @property
+    def _trunk_end(self) -> Array:
+        """Where the trunk is at the end of the next step."""
+        return self._head if self._trunk is None else self._trunk
 
     def _set_groom(self, groom: Groom) -> None:
         """Takes over a groom; its hair is to be placed then."""
@@ -314,6 +336,7 @@ class Live:
         self._hanging = HangingRods(self._rods, self._wire(), self._groomed_gravity)
         self._strands, self._support = self._hanging.strands(self._wire(), self._groomed_gravity)
         self._held = np.ascontiguousarray(self._strands.held, np.uint8)
+        self._neck = neck(groom)[1]
 
     def _set_bodies(self, rods: Array) -> None:
         """Samples the distances to bodies around the hair; what is groomed closer than its coil is wide stays so."""
@@ -322,10 +345,10 @@ class Live:
         if not self._grids or (low < self._low).any() or (high > self._high).any():
             self._low, self._high = low - MARGIN, high + MARGIN
             self._grids = []
-            for meshes, moves in ((self._bodies, True), (self._still, False)):
+            for meshes, of_head in ((self._bodies, True), (self._clothes, False)):
                 for mesh in meshes:
                     solid = _core.Solid(np.ascontiguousarray(mesh.points, np.float64), mesh.triangles)
-                    self._grids.append((_core.DistanceGrid(solid, self._low, self._high, DISTANCES, BAND), moves))
+                    self._grids.append((_core.DistanceGrid(solid, self._low, self._high, DISTANCES, BAND), of_head))
         for grid, _ in self._grids:
             self._clearance = np.minimum(self._clearance, grid.at(rods)[0])
 
@@ -394,7 +417,7 @@ class Live:
             memory[name] = memory[name] @ move[:3, :3].T
         memory["velocities"][:] = 0.0
         self._strands.recall({name: np.ascontiguousarray(values) for name, values in memory.items()})
-        self._pose = self._head
+        self._pose, self._trunk_pose = self._head, self._trunk_end
         return (
             f"the head was thrown {distance:.2g} m and {np.degrees(angle):.0f}° in a step of {self.dt:.3g} s; its hair "
             "was carried along"

@@ -11,19 +11,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet import sim
-from ringlet.api.live import head_motion, live_shot
+from ringlet.api.live import clothes_of, head_motion, live_shot
 from ringlet.data.errors import UserError
 from ringlet.groom import Groom
 from ringlet.live import Live, Touch
+from ringlet.live.neck import neck
 from ringlet.shot import Shot
 from ringlet.viewer import protocol
 from ringlet.viewer.play.head import MOTIONS, Head, clip_motion
 from ringlet.viewer.show.display_groom import DisplayGroom
 from ringlet.viewer.show.scene import VisibleMesh
 from ringlet.viewer.wire import pack
-
-NECK = 1.0  # height below the roots in which the neck is looked for, relative to the width of what they cover
-SLICE = 0.01  # height of the slices [m]
 
 WIND = 6.0  # speed of the wind of a side [m/s]
 GUSTS, GUST_PERIOD = 0.4, 1.3  # how far its speed changes, relative to it, and in which time [s]
@@ -77,7 +75,8 @@ class Mover:
 
     def __init__(self, scene: LiveScene, failed: Callable[[str], None]) -> None:
         self.scene, self._failed = scene, failed
-        self.live = live = live_shot(scene.shot, scene.groom) if scene.shot is not None else Live(scene.groom)
+        groom, shot = scene.groom, scene.shot
+        self.live = live = live_shot(shot, groom) if shot is not None else Live(groom, clothes=clothes_of(groom))
         self.head = Head(neck(scene.groom))
         self._began: protocol.TouchHair | None = None
         self._gust, self._time, self._wind = np.zeros(3), 0.0, np.array(live.wind)
@@ -107,7 +106,7 @@ class Mover:
         blows = np.array(SIDES[hand.side]) * -WIND * (1.0 + GUSTS * math.sin(2.0 * math.pi * self._time / GUST_PERIOD))
         self._gust += (1.0 - math.exp(-seconds / WIND_RISE)) * (blows - self._gust)
         self.live.wind = tuple((self._wind + self._gust).tolist())
-        self.live.head = self.head.transform
+        self.live.head, self.live.trunk = self.head.transform, shifted(self.head.trunk)
         self._touch(hand.touch)
         return self.live.step()
 
@@ -131,23 +130,6 @@ class Mover:
                 self._failed(str(error))
             else:
                 self.head.play(name, clip_motion(transforms, self.head.pivot, groom.space.fps))
-
-
-def neck(groom: Groom) -> NDArray[np.float64]:
-    """Where a head turns on its neck: in the first narrow slice of its mesh below the roots [m], shape (3,)."""
-    roots, points = (
-        np.asarray(of, np.float64) for of in (groom.locks.points[groom.locks.offsets[:-1]], groom.scalp.points)
-    )
-    low, high = roots.min(axis=0), roots.max(axis=0)
-    below = points[(points[:, 1] < low[1]) & (points[:, 1] > low[1] - NECK * (high[0] - low[0]))]
-    if not len(below):
-        return np.array([0.5 * (low[0] + high[0]), low[1], 0.5 * (low[2] + high[2])])
-    slices = np.floor(below[:, 1] / SLICE)
-    each = [below[slices == number] for number in np.unique(slices)[::-1]]  # from above
-    sizes = np.array([np.ptp(of[:, 0]) * np.ptp(of[:, 2]) for of in each])
-    near = [sizes[max(k - 2, 0) : k + 3].min() for k in range(len(sizes))]
-    narrow = each[int(np.argmax(sizes <= near))]
-    return 0.5 * (narrow.min(axis=0) + narrow.max(axis=0))
 
 
 def rods_message(key: int, mover: Mover) -> bytes:
@@ -176,6 +158,13 @@ def step_message(key: int, step: int, mover: Mover, note: str) -> bytes:
         points=live.rods - origin,
         worn=places,
     )
+
+
+def shifted(by: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The rigid motion without rotation, shape (4, 4)."""
+    motion = np.eye(4)
+    motion[:3, 3] = by
+    return motion
 
 
 def relative(motion: NDArray[np.float64], origin: NDArray[np.float64]) -> NDArray[np.float64]:
