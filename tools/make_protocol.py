@@ -15,7 +15,14 @@ from pydantic.fields import FieldInfo
 from ringlet.viewer import protocol
 
 FILE = Path(__file__).parents[1] / "web/src/protocol.ts"
-ARRAYS = {"f4": "Float32Array", "f8": "Float64Array", "i4": "Int32Array", "u4": "Uint32Array", "u1": "Uint8Array"}
+ARRAYS = {
+    "f4": "Float32Array",
+    "f8": "Float64Array",
+    "i2": "Int16Array",
+    "i4": "Int32Array",
+    "u4": "Uint32Array",
+    "u1": "Uint8Array",
+}
 PLAIN: dict[Any, str] = {
     str: "string",
     int: "number",

@@ -11,10 +11,11 @@ import remedies
 import remedies_files
 import remedies_live
 import remedies_review
+import remedies_takes
 
 import ringlet
 
-ROWS = remedies.ROWS + remedies_files.ROWS + remedies_live.ROWS + remedies_review.ROWS
+ROWS = remedies.ROWS + remedies_files.ROWS + remedies_live.ROWS + remedies_review.ROWS + remedies_takes.ROWS
 
 UNTRIED = 2  # messages whose advice no row follows
 

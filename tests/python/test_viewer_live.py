@@ -147,7 +147,7 @@ def test_without_locks_one_line_says_so(groom: Groom) -> None:
 class Slow:
     """Hair whose steps take long."""
 
-    live = SimpleNamespace(dt=0.02)
+    live, scene = SimpleNamespace(dt=0.02, wind=(0.0, 0.0, 0.0)), SimpleNamespace(groom=None)
 
     def __init__(self, *_: Any) -> None:
         pass

@@ -37,6 +37,7 @@ export function viewOf(hash: string): { name: string; view: View } | null {
       locks: numbers(values.get("locks")).filter(Number.isSafeInteger),
       frame: Number.isFinite(frame) ? frame : null,
       looks: null,
+      step: null,
     },
   };
 }

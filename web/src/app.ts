@@ -25,6 +25,7 @@ import { Stack } from "./panel/stack";
 import { PresetTool } from "./panel/presets";
 import { ProblemBar } from "./panel/problems";
 import { Notices, Status } from "./panel/status";
+import { TakePlayer } from "./panel/takes";
 import { TimelineBar } from "./panel/timeline";
 import { Tray } from "./panel/tray";
 import { Viewbar } from "./panel/viewbar";
@@ -82,6 +83,9 @@ export class App {
     // What is kept next to the recipe
     this.tray = new Tray(() => this.look.introduce());
     const snapshots = new Snapshots(model, viewer, this.look, this.tray);
+    const takes = new TakePlayer(model, viewer, this.timeline, () => snapshots.take("keep_take"));
+    snapshots.play = (id) => takes.play(id);
+    live.line.append(takes.keep);
     const notes = new Notes(model, viewer, this.look, this.tray);
     const references = new References(model, viewer, this.tray, this.notices);
     this.tray.opened = () => sheets.open("");
@@ -99,6 +103,7 @@ export class App {
     viewbar.element.append(live.button, live.line, lens.button, snapshots.button, this.tray.button);
     const bar = new Bar(model, () => this.setTheme(), people.element, () => this.endComparison()).element;
     const compare = new CompareBar(model, viewer, () => this.endComparison());
+    compare.bar.append(takes.element);
     const stack = new Stack(model, () => presets.show(true));
     const left = h("div", { class: "left" }, stack.element, presets.element, this.lock.element, ...this.tools.elements);
     const settings = new Settings(model).element;

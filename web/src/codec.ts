@@ -2,11 +2,12 @@
 
 import type { FromPage, FromServer } from "./protocol";
 
-type Kind = "f4" | "f8" | "i4" | "u4" | "u1";
+type Kind = "f4" | "f8" | "i2" | "i4" | "u4" | "u1";
 
 const ARRAYS = {
   f4: Float32Array,
   f8: Float64Array,
+  i2: Int16Array,
   i4: Int32Array,
   u4: Uint32Array,
   u1: Uint8Array,

@@ -63,7 +63,9 @@ type Topic =
   | "views"
   | "cameras"
   | "clear"
-  | "live";
+  | "live"
+  | "frame"
+  | "step";
 
 const NOT_LIVE: Live = { kind: "live", on: false, fps: 0, goes_on: [], wind: "" };
 
@@ -82,6 +84,8 @@ export class Model {
   live = NOT_LIVE;
   /** The looks that are compared, by side; that of the open recipe too, once there is another. */
   compared: Partial<Record<Side, Compared>> = {};
+  /** Step at which the take that is compared stands; null: it plays. */
+  step: number | null = null;
   snapshots: Snapshot[] = [];
   notes: Note[] = [];
   references: Reference[] = [];
@@ -207,6 +211,7 @@ export class Model {
     this.documents = {};
     this.numbers = this.guides = this.measured = this.timeline = null;
     this.compared = {};
+    this.step = null;
     this.locks = [];
     this.followed = null;
     this.live = NOT_LIVE;

@@ -1,6 +1,6 @@
 // Made by tools/make_protocol.py from python/ringlet/viewer/protocol; change it there.
 
-export const VERSION = 12;
+export const VERSION = 13;
 export type Json = string | number | boolean | null | Json[] | { [key: string]: Json };
 
 /** A stage of the groom. place: path of its settings in the recipe. */
@@ -100,15 +100,17 @@ export interface Shared {
   locks: number[];
   frame: number | null;
   looks: Arranged | null;
+  step: number | null;
 }
 
-/** A snapshot. time: when it was taken, in ISO 8601. */
+/** A snapshot. */
 export interface Snapshot {
   id: string;
   author: string;
   note: string;
   time: string;
   look: Shared;
+  seconds: number;
 }
 
 /** A note; see ``WriteNote``. time: when it was written, in ISO 8601. */
@@ -398,6 +400,7 @@ export interface Look {
   locks: number[];
   frame?: number | null;
   looks?: Arranged | null;
+  step?: number | null;
 }
 
 /** Requests a share page: one file with the look to turn. */
@@ -498,6 +501,15 @@ export interface MoveHead {
 export interface Blow {
   kind: "blow";
   side: "" | "left" | "right" | "front" | "back";
+}
+
+/** Keeps the last seconds of live hair as a snapshot. picture: PNG or JPEG in base64. */
+export interface KeepTake {
+  kind: "keep_take";
+  author?: string;
+  note?: string;
+  look: Shared;
+  picture: string;
 }
 
 /** Takes a snapshot of the current look. picture: PNG or JPEG in base64. */
@@ -797,6 +809,7 @@ export interface Compared {
   side: "a" | "b" | "c" | "d";
   name: string;
   detail: string;
+  take: string;
   settings: Record<string, string>;
 }
 
@@ -848,6 +861,7 @@ export interface Followed {
   locks: number[];
   frame: number | null;
   looks: Arranged | null;
+  step: number | null;
 }
 
 /** Position of the leading page's pointer in the scene [m]; None where it is elsewhere. */
@@ -969,6 +983,26 @@ export interface LiveStep {
   worn: Float32Array;
 }
 
+/** A take of live hair that is compared, which pages play; see ``ringlet.viewer.show.live_take``. */
+export interface LiveTake {
+  kind: "live_take";
+  side: "a" | "b" | "c" | "d";
+  id: string;
+  fps: number;
+  first: number | null;
+  pivot: [number, number, number];
+  unit: number;
+  points: Float32Array;
+  along: Float32Array;
+  axis: Float32Array;
+  carrier: Uint32Array;
+  steps: Int32Array;
+  heads: Float32Array;
+  trunks: Float32Array;
+  moved: Int16Array;
+  worn: Int16Array;
+}
+
 export type FromPage =
   | Hello
   | Introduce
@@ -1014,6 +1048,7 @@ export type FromPage =
   | TouchHair
   | MoveHead
   | Blow
+  | KeepTake
   | TakeSnapshot
   | EditSnapshot
   | DeleteSnapshot
@@ -1064,4 +1099,5 @@ export type FromServer =
   | Rendered
   | Live
   | Rods
-  | LiveStep;
+  | LiveStep
+  | LiveTake;

@@ -109,7 +109,7 @@ test("the page that leads says what it looks at", async () => {
 
 test("a follower sees the comparison as the leader arranges it", async () => {
   const page = await open();
-  const compared: Compared = { kind: "compared", side: "b", name: "as saved", detail: "", settings: {} };
+  const compared: Compared = { kind: "compared", side: "b", name: "as saved", detail: "", settings: {}, take: "" };
   page.hear({ ...compared, side: "a", name: "now" });
   page.hear(compared);
   two(page, true, "Bo");
@@ -141,7 +141,7 @@ test("a page that follows takes snapshots, and loads none", async () => {
   vi.spyOn(page.app.viewer, "drawAt").mockReturnValue(document.createElement("canvas"));
   press("s", {}, page.app.viewer.canvas);
   expect(page.last("take_snapshot")).toMatchObject({ author: "", picture: "AAAA", look: page.app.look.state });
-  page.hear({ kind: "snapshots", snapshots: [{ id: "1", author: "", note: "", time: "2026-01-01T10:00:00", look: page.app.look.state }] });
+  page.hear({ kind: "snapshots", snapshots: [{ id: "1", author: "", note: "", time: "2026-01-01T10:00:00", look: page.app.look.state, seconds: 0 }] });
   expect(control<HTMLButtonElement>("Load: use its settings").disabled).toBe(true);
   two(page, true);
   expect(control<HTMLButtonElement>("Load: use its settings").disabled).toBe(false);

@@ -245,6 +245,12 @@ class Session:
         if self._live.on:
             self._live.show(self._live_scene())
 
+    def _keep_take(self, message: protocol.KeepTake) -> None:
+        """Keeps the last seconds of live hair; raises UserError where the groom that moved is not the open one."""
+        groom = self._viewport.made("take").groom
+        current = self._viewport.revision == self.files.recipe.revision
+        self._review.keep_take(message, self._live.recent.take(groom if current else None))
+
     # Messages
 
     def handle(self, page: Page, message: protocol.FromPage) -> None:
@@ -278,6 +284,8 @@ class Session:
                     self._motions.ask(Question(self.files.shot, display.groom, message.lock, page.queue))
             case protocol.Watch():
                 page.queue.request(self._playback.frame_sources(message))
+            case protocol.KeepTake():
+                self._keep_take(message)
             case protocol.Share():
                 self._sharer.share(self.publisher.retained(), self.files.file, message, page.queue)
             case _ if isinstance(message, protocol.AnyReview):

@@ -80,6 +80,7 @@ export class Look {
       locks: this.lock.ids,
       frame: this.timeline.current,
       looks: this.viewer.looks.arranged,
+      step: this.model.step,
     };
   }
 
@@ -97,6 +98,8 @@ export class Look {
         this.viewer.looks.arrangeAs(state.looks);
         this.model.tell("arranged");
       }
+      this.model.step = state.step ?? null;
+      this.model.tell("step");
     }
     this.applying = false;
   }
@@ -226,7 +229,7 @@ function lightOf({ light, light_turn, color, focal_length }: View): string {
 
 /** Whether two views show the same. */
 function same(a: View, b: View): boolean {
-  const rest = ({ focal_length, light_turn, light, color, overlay, file, place, locks, frame, looks }: View) =>
-    JSON.stringify([focal_length, light_turn, light, color, overlay, file, place, locks, frame, looks]);
+  const rest = ({ focal_length, light_turn, light, color, overlay, file, place, locks, frame, looks, step }: View) =>
+    JSON.stringify([focal_length, light_turn, light, color, overlay, file, place, locks, frame, looks, step]);
   return rest(a) === rest(b) && a.camera.every((value, k) => Math.abs(value - b.camera[k]) < SAME);
 }

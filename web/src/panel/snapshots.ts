@@ -12,11 +12,16 @@ import { bindKey, plainKey } from "./keys";
 import type { Look } from "./look";
 import type { Tray, TrayTab } from "./tray";
 
+type Kept = "take_snapshot" | "keep_take";
+
 export class Snapshots {
   readonly button = iconButton("snapshot", "Take a snapshot (S)", () => this.take());
   private readonly strip = h("ul", { class: "strip", "aria-label": "Snapshots" });
   private readonly tab: TrayTab;
-  private waiting = false;
+  /** What is taken as soon as the groom is that of its settings. */
+  private waiting: Kept | null = null;
+  /** Plays the take of a snapshot. */
+  play = (_: string): void => {};
 
   constructor(
     private readonly model: Model,
@@ -32,19 +37,19 @@ export class Snapshots {
     model.on("document", () => {
       this.button.hidden = take.hidden = !model.documents.recipe;
     });
-    model.on("numbers", () => this.waiting && model.settled && this.take());
+    model.on("numbers", () => this.waiting && model.settled && this.take(this.waiting));
     bindKey({ section: "Review", keys: "S", does: "take a snapshot", on: plainKey("s"), run: () => this.take() });
     this.update();
   }
 
-  /** Takes a snapshot of the open recipe, as soon as the groom that is seen is that of its settings. */
-  take(): void {
+  /** Takes a snapshot of the open recipe, or of live hair, as soon as the groom that is seen is that of its settings. */
+  take(kind: Kept = "take_snapshot"): void {
     const { model } = this;
     if (!model.documents.recipe) return;
-    this.waiting = !model.settled && !model.stuck;
+    this.waiting = model.settled || model.stuck ? null : kind;
     if (this.waiting) return;
     const picture = thumbnail(this.viewer).toDataURL("image/png").split(",")[1];
-    model.say({ kind: "take_snapshot", author: ownName(), look: this.look.state, picture });
+    model.say({ kind, author: ownName(), look: this.look.state, picture });
     this.tray.open(this.tab);
   }
 
@@ -67,6 +72,7 @@ export class Snapshots {
       "button",
       { type: "button", class: "thumbnail", disabled: !leads, title: "Compare with it", "aria-label": `Compare with ‘${title}’`, onclick: () => compareWith(model, `snapshot:${one.id}`) },
       picture,
+      one.seconds > 0 && h("span", { class: "seconds" }, `${one.seconds.toFixed(1)} s`),
     );
     const note = h("textarea", { rows: 1, maxlength: 4000, placeholder: "Note", "aria-label": `Note of ‘${title}’` });
     note.value = one.note;
@@ -76,6 +82,7 @@ export class Snapshots {
     const buttons = h(
       "span",
       { class: "group" },
+      one.seconds > 0 && iconButton("play", "Play the take", () => this.play(one.id), { disabled: !leads }),
       iconButton("load", "Load: use its settings", () => model.say({ kind: "load_snapshot", id: one.id }), { disabled: !leads }),
       iconButton("camera", "Use its camera and light", () => this.look.apply(one.look, false)),
       iconButton("bin", "Delete", () => this.askDelete(one, title)),

@@ -65,7 +65,7 @@ export class TimelineBar {
     for (const topic of ["timeline", "role", "files"] as const) model.on(topic, () => this.update());
     this.chart.setAttribute("aria-expanded", "false");
     new ResizeObserver(() => this.tellHeight()).observe(this.element);
-    bindKey({ section: "Frames", keys: "Space", does: "play the simulated frames, or stop", on: plainKey(" "), run: () => model.timeline && this.toggle() });
+    bindKey({ section: "Frames", keys: "Space", does: "play the simulated frames, or stop", on: (event) => model.timeline !== null && plainKey(" ")(event), run: () => this.toggle() });
     const mark = (event: KeyboardEvent) => model.timeline && this.mark(event.key.toLowerCase() === "i" ? "in" : "out");
     bindKey({ section: "Frames", keys: "I and O", does: "set the in or the out point of playback to this frame; press again to remove it", on: plainKey("i", "o"), run: mark });
     const jump = (event: KeyboardEvent) => this.jump(event.key === "Home" ? "first" : "last");
@@ -345,6 +345,7 @@ export class TimelineBar {
 
   private tell(): void {
     const { timeline } = this.model;
+    this.model.tell("frame");
     if (!timeline) return;
     const known = this.known("shot");
     const stretch = known?.statistics["max_stretch"];

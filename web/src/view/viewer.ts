@@ -118,19 +118,19 @@ export class Viewer {
     this.stage.placeBodies(side, points);
   }
 
-  /** Rods carry the open look, with bodies in a pose of the head; what the hair wears has its own points. */
-  carry(rods: Rods, points: Float32Array, pose: Pose, worn: Float32Array): void {
-    this.hair.a.carryBy(rods, points, pose.head);
-    this.stage.pose("a", pose, worn);
+  /** Rods carry a look, with bodies in a pose of the head; what the hair wears has its own points. */
+  carry(rods: Rods, points: Float32Array, pose: Pose, worn: Float32Array, side: Side = "a"): void {
+    this.hair[side].carryBy(rods, points, pose.head);
+    this.stage.pose(side, pose, worn);
     this.moves();
   }
 
-  /** Puts hair and bodies of the open look where they are at rest. */
-  putAtRest(): void {
-    const { a } = this.hair;
-    a.carryBy(null);
-    if (a.locks && a.placed !== a.locks.points) a.place(a.locks);
-    this.placeBodies("a");
+  /** Puts hair and bodies of a look where they are at rest. */
+  putAtRest(side: Side = "a"): void {
+    const hair = this.hair[side];
+    hair.carryBy(null);
+    if (hair.locks && hair.placed !== hair.locks.points) hair.place(hair.locks);
+    this.placeBodies(side);
     this.moves();
   }
 

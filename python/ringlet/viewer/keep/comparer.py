@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
-from ringlet.data.errors import failure
+from ringlet.data.errors import UserError, failure
 from ringlet.data.regular import read_text
 from ringlet.groom import Recipe
 from ringlet.viewer import protocol
@@ -17,7 +17,7 @@ from ringlet.viewer.keep.reviewing import Reviewing
 from ringlet.viewer.project import Project
 from ringlet.viewer.protocol import Side
 from ringlet.viewer.publisher import Publisher, SendQueue
-from ringlet.viewer.show.display_groom import GroomEvaluator
+from ringlet.viewer.show.display_groom import DisplayGroom, GroomEvaluator
 from ringlet.viewer.show.viewport import Viewport
 from ringlet.viewer.wire import pack, trouble
 from ringlet.viewer.worker import LatestTaskWorker, Stale
@@ -28,6 +28,7 @@ class Comparison:
     """A request for a groom to compare with: a recipe, its muted stages, its name, and the page that asks.
 
     detail: author and time of a snapshot
+    take:   id of a snapshot whose take of live hair plays; empty for none
     """
 
     side: Side
@@ -36,6 +37,7 @@ class Comparison:
     name: str
     detail: str
     page: SendQueue
+    take: str = ""
 
 
 class Comparer:
@@ -77,7 +79,8 @@ class Comparer:
             return Comparison(message.side, recipe, none, "as saved", _written(document.path), page)
         if message.to == "snapshot":
             recipe, muted, name, detail = self._review.snapshot_to_compare(message.name)
-            return Comparison(message.side, recipe, muted, name, detail, page)
+            take = message.name if self._review.snapshots[message.name].seconds else ""
+            return Comparison(message.side, recipe, muted, name, detail, page, take)
         if message.to == "file":
             path = self._project.inside(message.name, "compare")
             recipe = files.parse(read_text(path, "choose a recipe of the project"), path)
@@ -111,18 +114,33 @@ class Comparer:
                 asked.recipe, asked.muted, draft=False, check_abort=worker.raise_if_stale
             )
             worker.raise_if_stale()
-            self._call(self._show, asked)
-            self._call(self._viewport.show, display, asked.side)
+            self._call(self._show, asked, display)
         except Stale:
             raise
         except Exception as error:
             asked.page.put("trouble", trouble(failure("a groom to compare with could not be made", error)))
 
-    def _show(self, asked: Comparison) -> None:
+    def _show(self, asked: Comparison, display: DisplayGroom) -> None:
         self._shown[asked.side] = asked
         self.recompute()
         settings = settings_text(asked.recipe)
-        self._announce(protocol.Compared(side=asked.side, name=asked.name, detail=asked.detail, settings=settings))
+        self._announce(
+            protocol.Compared(side=asked.side, name=asked.name, detail=asked.detail, settings=settings, take=asked.take)
+        )
+        self._viewport.show(display, asked.side)
+        if asked.take:
+            self._play(asked)
+
+    def _play(self, asked: Comparison) -> None:
+        """Lets pages play a take on the side of its groom."""
+        snapshots = self._review.snapshots
+        try:
+            motion, first = snapshots.motion(asked.take), snapshots[asked.take].first
+        except UserError as error:
+            asked.page.put("trouble", trouble(str(error)))
+            return
+        if motion is not None:
+            self._publisher.publish(f"{asked.side}/take", motion.message(asked.side, asked.take, first))
 
     def _clear(self, side: Side) -> None:
         """Removes the groom on a side."""

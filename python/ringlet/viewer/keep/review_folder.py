@@ -81,9 +81,10 @@ class ReviewFolder:
         with replacing(self.file(name), update=True) as aside:
             aside.write_bytes(data)
 
-    def bytes(self, name: str) -> bytes:
-        """Contents of a picture file; raises UserError for one that cannot be read."""
-        return read_bytes(self.file(name), "check the file", MOST_PICTURE)
+    def bytes(self, name: str, most: int = MOST_PICTURE) -> bytes:
+        """Contents of a picture, or of another file of at most so many bytes; raises UserError for one that cannot be
+        read."""
+        return read_bytes(self.file(name), "check the file", most)
 
     def remove(self, *names: str) -> None:
         """Removes files that exist."""

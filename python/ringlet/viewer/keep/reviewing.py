@@ -17,6 +17,7 @@ from ringlet.viewer.keep.snapshots import SnapshotStore, load, recipe_of
 from ringlet.viewer.keep.views import ViewStore
 from ringlet.viewer.project import Project
 from ringlet.viewer.publisher import Publisher
+from ringlet.viewer.show.live_take import LiveTake
 from ringlet.viewer.wire import pack
 
 
@@ -67,8 +68,24 @@ class Reviewing:
 
     def handle(self, message: protocol.AnyReview) -> None:
         """Handles a message of any page; raises UserError for a request that fails."""
+        self._do(lambda: self._change(message))
+
+    def keep_take(self, message: protocol.KeepTake, motion: LiveTake) -> None:
+        """Keeps a take of live hair as a snapshot; raises UserError when it cannot be written."""
+
+        def keep() -> Callable[[], None]:
+            picture, _ = decode_picture(message.picture, "take: picture")
+            files = self._files
+            shot = files.document("shot").text if files.mode == "shot" else ""
+            self.snapshots.take(files.recipe, message.look, picture, message.author, message.note, motion, shot)
+            return self._publish_snapshots
+
+        self._do(keep)
+
+    def _do(self, change: Callable[[], Callable[[], None]]) -> None:
+        """Makes a change of the folder, which returns what publishes it."""
         try:
-            publish = self._change(message)
+            publish = change()
         finally:
             self._state = self._folder.state()  # before pages hear of it: what is written then is of others
         publish()

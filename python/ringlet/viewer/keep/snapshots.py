@@ -3,6 +3,7 @@
 ``ID.toml`` has author, note, time and look, ``ID.png`` the thumbnail, and ``ID.recipe.toml`` the recipe as it was
 written. Files that the recipe reads (meshes, curves, maps) count from the recipe's folder and are not copied. What a
 recipe extends may change later, so that a snapshot also has ``ID.resolved.toml``, the recipe that refers to no other.
+One of live hair has its motion, ``ID.take.npz``, and ``ID.shot.toml``, the shot whose material and forces moved it.
 """
 
 from __future__ import annotations
@@ -24,18 +25,28 @@ from ringlet.viewer.files.variant import settings_of
 from ringlet.viewer.keep.review_entries import Entries
 from ringlet.viewer.keep.review_folder import ReviewFolder, now
 from ringlet.viewer.protocol import Shared, Snapshot
+from ringlet.viewer.show.live_take import LiveTake
 
-RECIPE, RESOLVED, EDITS = ".recipe.toml", ".resolved.toml", ".edits.toml"
+RECIPE, RESOLVED, EDITS, SHOT, TAKE = ".recipe.toml", ".resolved.toml", ".edits.toml", ".shot.toml", ".take.npz"
+SUFFIXES = (".png", RECIPE, RESOLVED, EDITS, SHOT, TAKE)  # of the files of a snapshot besides its own
+MOST_TAKE = 200_000_000  # bytes of the file of a take
 
 
 class Stored(BaseModel):
-    """Contents of the file of a snapshot. muted, solo: stages, as in the state of the recipe."""
+    """Contents of the file of a snapshot.
+
+    muted, solo: stages, as in the state of the recipe
+    seconds:     of the take of live hair; 0 for none
+    first:       frame at which the take begins in the shot that was made of it; None for no shot
+    """
 
     author: str = ""
     note: str = ""
     time: str = ""
     muted: Annotated[list[str], AfterValidator(lambda stages: [*present(dict.fromkeys(stages), "muted")[0]])] = []
     solo: str = ""
+    seconds: float = 0.0
+    first: int | None = None
     look: Shared
 
 
@@ -52,13 +63,13 @@ class SnapshotStore(Entries[Stored]):
     """The snapshots of a recipe, by id, the oldest first."""
 
     def __init__(self, folder: ReviewFolder) -> None:
-        super().__init__(folder, "snapshot", Stored, most=500, suffixes=(".png", RECIPE, RESOLVED, EDITS))
+        super().__init__(folder, "snapshot", Stored, most=500, suffixes=SUFFIXES)
 
     @property
     def snapshots(self) -> list[Snapshot]:
         """All snapshots, the oldest first."""
         return [
-            Snapshot(id=id, author=one.author, note=one.note, time=one.time, look=one.look)
+            Snapshot(id=id, author=one.author, note=one.note, time=one.time, look=one.look, seconds=one.seconds)
             for id, one in self.entries.items()
         ]
 
@@ -66,17 +77,53 @@ class SnapshotStore(Entries[Stored]):
         """PNG file of the thumbnail of a snapshot; raises UserError when there is none."""
         return self.folder.bytes(self.file(id, ".png"))
 
-    def take(self, document: Document, look: Shared, picture: bytes, author: str, note: str) -> str:
-        """Writes a snapshot of a recipe; returns its id."""
+    def take(
+        self,
+        document: Document,
+        look: Shared,
+        picture: bytes,
+        author: str,
+        note: str,
+        motion: LiveTake | None = None,
+        shot: str = "",
+    ) -> str:
+        """Writes a snapshot of a recipe; returns its id. A file that cannot be written leaves none of them.
+
+        motion: of live hair, that plays
+        shot:   text of the shot that moved it
+        """
         id, state = self.new_id(), document.state
-        self.folder.write_bytes(self.file(id, ".png"), picture)
-        self.folder.write_text(self.file(id, RECIPE), state.text)
-        if (resolved := document.model.text or state.text) != state.text:
-            self.folder.write_text(self.file(id, RESOLVED), resolved)
-        if state.edits:
-            self.folder.write_text(self.file(id, EDITS), state.edits)
         stored = Stored(author=author, note=note, time=now(), muted=sorted(state.muted), solo=state.solo, look=look)
-        return self.add(stored, id)  # the last file: those that belong to it are there
+        try:
+            self.folder.write_bytes(self.file(id, ".png"), picture)
+            self.folder.write_text(self.file(id, RECIPE), state.text)
+            if (resolved := document.model.text or state.text) != state.text:
+                self.folder.write_text(self.file(id, RESOLVED), resolved)
+            if state.edits:
+                self.folder.write_text(self.file(id, EDITS), state.edits)
+            if shot:
+                self.folder.write_text(self.file(id, SHOT), shot)
+            if motion is not None:
+                self.folder.write_bytes(self.file(id, TAKE), motion.to_bytes())
+                stored.seconds = round(motion.seconds, 3)
+            return self.add(stored, id)  # the last file: those that belong to it are there
+        except UserError:
+            self.folder.remove(*(self.file(id, suffix) for suffix in SUFFIXES))
+            raise
+
+    def motion(self, id: str) -> LiveTake | None:
+        """The take of live hair of a snapshot, None for one without; raises UserError when it cannot be read."""
+        if not self[id].seconds:
+            return None
+        try:
+            return LiveTake.from_bytes(self.folder.bytes(self.file(id, TAKE), MOST_TAKE))
+        except ValueError as error:
+            raise UserError(f"snapshot: {id}{TAKE} holds no take ({error}); delete the snapshot") from error
+
+    def shot(self, id: str) -> str:
+        """Text of the shot that moved the take of a snapshot; empty for none."""
+        self.__getitem__(id)
+        return self.folder.text(self.file(id, SHOT))
 
     def texts(self, id: str) -> Texts:
         """The recipe of a snapshot; raises UserError when its file is gone."""

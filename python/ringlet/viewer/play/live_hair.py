@@ -11,6 +11,7 @@ from ringlet.data.errors import UserError, failure
 from ringlet.viewer import protocol
 from ringlet.viewer.play.head import MOTIONS
 from ringlet.viewer.play.mover import Hand, LiveScene, Mover, rods_message, step_message
+from ringlet.viewer.play.takes import TakeRing
 from ringlet.viewer.publisher import Publisher
 from ringlet.viewer.wire import pack
 
@@ -23,6 +24,7 @@ class LiveHair:
     call:    runs a function on that thread
     failed:  reports an error message
     watched: whether a page is connected; without one, time stands still
+    recent:  its last seconds, to be kept
     """
 
     def __init__(
@@ -38,6 +40,7 @@ class LiveHair:
         self._thread: threading.Thread | None = None
         self._hand, self._state = Hand(), protocol.Live(on=False)
         self._key = 0
+        self.recent = TakeRing()
 
     @property
     def on(self) -> bool:
@@ -99,6 +102,7 @@ class LiveHair:
         if patience > 0.0:
             self._thread.join(patience)
         self._thread = None
+        self.recent.clear()
         self._publisher.clear("live")
         self._publish(protocol.Live(on=False))
 
@@ -143,7 +147,9 @@ class LiveHair:
                 key = self._send_rods(mover, stopping)
             note = mover.step(hand, (1 + late) * dt)
             if not stopping.is_set():
-                self._publisher.send("live/step", step_message(key, step, mover, note))
+                message = step_message(key, step, mover, note)
+                self.recent.add(message, mover.live.wind)
+                self._publisher.send("live/step", message)
             late = max(0, math.floor((time.monotonic() - due) / dt))  # steps to leave out, so that time goes on
             step, due = step + 1 + late, due + (1 + late) * dt
             stopping.wait(max(0.0, due - time.monotonic()))
@@ -156,5 +162,8 @@ class LiveHair:
     def _send_rods(self, mover: Mover, stopping: threading.Event) -> int:
         """Tells pages which rods follow; returns their key."""
         self._key += 1
-        self._call(self._announce, stopping, rods_message(self._key, mover))
+        message = rods_message(self._key, mover)
+        if not stopping.is_set():
+            self.recent.begin(message, mover.scene.groom, 1.0 / mover.live.dt)
+        self._call(self._announce, stopping, message)
         return self._key

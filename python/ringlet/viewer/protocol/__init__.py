@@ -54,7 +54,7 @@ from ringlet.viewer.protocol.groom import (
     Numbers,
 )
 from ringlet.viewer.protocol.lights import Lamp, Rig
-from ringlet.viewer.protocol.live import Blow, GoLive, HoldHead, Live, LiveStep, MoveHead, Rods, TouchHair
+from ringlet.viewer.protocol.live import Blow, GoLive, HoldHead, Live, LiveStep, LiveTake, MoveHead, Rods, TouchHair
 from ringlet.viewer.protocol.message import (
     VERSION,
     Arranged,
@@ -89,6 +89,7 @@ from ringlet.viewer.protocol.review import (
     DeleteSnapshot,
     EditNote,
     EditSnapshot,
+    KeepTake,
     KeepView,
     LoadSnapshot,
     Note,
@@ -167,6 +168,7 @@ FROM_SERVER: tuple[type[Message], ...] = (
     Live,
     Rods,
     LiveStep,
+    LiveTake,
 )
 
 __all__ = [
@@ -215,6 +217,7 @@ __all__ = [
     "Introduce",
     "Isolate",
     "Keep",
+    "KeepTake",
     "KeepView",
     "KeptRun",
     "Lamp",
@@ -222,6 +225,7 @@ __all__ = [
     "ListPresets",
     "Live",
     "LiveStep",
+    "LiveTake",
     "LoadSnapshot",
     "LockMotion",
     "Locks",

@@ -24,7 +24,7 @@ from ringlet.viewer.protocol.message import (
 from ringlet.viewer.protocol.painting import Draw, Paint, ShowMap, Stroke
 from ringlet.viewer.protocol.presets import Keep, ListPresets, Take, Try
 from ringlet.viewer.protocol.render import Render, StopRender
-from ringlet.viewer.protocol.review import ReviewMessage
+from ringlet.viewer.protocol.review import KeepTake, ReviewMessage
 
 MOST_TEXT = 1_800_000  # characters of a file
 
@@ -358,6 +358,7 @@ FromPage = Annotated[
     | TouchHair
     | MoveHead
     | Blow
+    | KeepTake
     | ReviewMessage,
     Field(discriminator="kind"),
 ]

@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from ringlet.viewer.protocol.message import Message, Point, Position
+from ringlet.viewer.protocol.message import EntryId, Message, Point, Position, Side
 
 Angle = Annotated[float, Field(ge=-10.0, le=10.0)]  # [rad]
 
@@ -108,3 +108,33 @@ class LiveStep(Message):
     trunk: Point
     note: str = ""
     arrays: ClassVar[dict[str, str]] = {"points": "f4", "worn": "f4"}
+
+
+class LiveTake(Message):
+    """A take of live hair that is compared, which pages play; see ``ringlet.viewer.show.live_take``.
+
+    id:    of its snapshot
+    fps:   steps a second
+    first: frame of the open shot at which it begins; None for a take of another motion
+    pivot: about which the head turns on its neck [m]
+    unit:  length of a part, in which ``moved`` and ``worn`` are [m]
+
+    ``points``, ``along``, ``axis`` and ``carrier`` are as in ``Rods``. Of each of the ``steps``, by their numbers,
+    ``heads`` has 12 numbers and ``trunks`` 3, as in ``LiveStep``. ``moved`` is the way of each vertex from where it was
+    groomed, ``worn`` the points of what hair wears, both in the frame of the head.
+    """
+
+    kind: Literal["live_take"] = "live_take"
+    side: Side
+    id: EntryId
+    fps: float
+    first: int | None
+    pivot: Point
+    unit: float
+    arrays: ClassVar[dict[str, str]] = {
+        **dict.fromkeys(("points", "along", "axis"), "f4"),
+        "carrier": "u4",
+        "steps": "i4",
+        **dict.fromkeys(("heads", "trunks"), "f4"),
+        **dict.fromkeys(("moved", "worn"), "i2"),
+    }

@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from ringlet.data import limits
 
-VERSION = 12
+VERSION = 13
 
 Place = list[str | int]  # path of a setting in its file: ["shape", 0, "amount"]; empty for the file
 File = Literal["recipe", "shot"]
@@ -19,6 +19,7 @@ Gesture = Annotated[int, Field(ge=-limits.ID, le=limits.ID)]
 FrameNumber = Annotated[float, Field(ge=-limits.FRAME, le=limits.FRAME)]
 Coordinate = Annotated[float, Field(ge=-1e6, le=1e6)]  # [m]
 Position = tuple[Coordinate, Coordinate, Coordinate]
+EntryId = Annotated[str, Field(pattern=r"^[0-9A-Za-z-]{1,40}$")]
 Light = Annotated[str, Field(max_length=256)]  # a rig, or the path of an HDRI in the folder of the project
 Side = Literal["a", "b", "c", "d"]  # a look in the picture: the open recipe, and up to three that it is compared with
 
@@ -55,6 +56,7 @@ class Shared(Message):
     locks:  ids of the chosen locks
     frame:  the frame that is seen; None without a timeline
     looks:  arrangement of the looks that are compared; None for one look
+    step:   step at which the take that is compared stands; None where it plays, and without one
     """
 
     camera: list[Coordinate] = Field(min_length=6, max_length=6)
@@ -68,3 +70,4 @@ class Shared(Message):
     locks: list[Id] = Field(max_length=10_000)
     frame: FrameNumber | None = None
     looks: Arranged | None = None
+    step: Row | None = None

@@ -6,10 +6,9 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from ringlet.viewer.protocol.message import Id, Message, Position, Row, Shared
+from ringlet.viewer.protocol.message import EntryId, Id, Message, Position, Row, Shared
 
 MOST_PICTURE = 6_000_000  # characters of a picture in base64
-EntryId = Annotated[str, Field(pattern=r"^[0-9A-Za-z-]{1,40}$")]
 Small = Annotated[float, Field(ge=-100.0, le=100.0)]
 Author = Annotated[str, Field(max_length=80)]
 Text = Annotated[str, Field(max_length=4000)]
@@ -39,6 +38,16 @@ class TakeSnapshot(Message):
     """Takes a snapshot of the current look. picture: PNG or JPEG in base64."""
 
     kind: Literal["take_snapshot"] = "take_snapshot"
+    author: Author = ""
+    note: Text = ""
+    look: Shared
+    picture: str = Field(max_length=MOST_PICTURE)
+
+
+class KeepTake(Message):
+    """Keeps the last seconds of live hair as a snapshot. picture: PNG or JPEG in base64."""
+
+    kind: Literal["keep_take"] = "keep_take"
     author: Author = ""
     note: Text = ""
     look: Shared
@@ -159,13 +168,18 @@ ReviewMessage = AnyReview | LoadSnapshot | PickColor
 
 
 class Snapshot(Message):
-    """A snapshot. time: when it was taken, in ISO 8601."""
+    """A snapshot.
+
+    time:    when it was taken, in ISO 8601
+    seconds: of the take of live hair that it holds; 0 for none
+    """
 
     id: EntryId
     author: Author
     note: Text
     time: str
     look: Shared
+    seconds: float
 
 
 class Snapshots(Message):

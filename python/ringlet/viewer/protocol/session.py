@@ -195,12 +195,14 @@ class Compared(Message):
     name:     of the groom or cache; empty for none
     detail:   author and time of a snapshot
     settings: those that its recipe sets, in the notation of TOML; empty for a cache
+    take:     id of the snapshot whose take plays; empty for none
     """
 
     kind: Literal["compared"] = "compared"
     side: Side
     name: str
     detail: str = ""
+    take: str = ""
     settings: dict[str, str] = Field(default_factory=dict)
 
 

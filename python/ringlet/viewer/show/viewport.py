@@ -22,12 +22,14 @@ from ringlet.viewer.wire import pack
 class Viewport:
     """The displayed grooms: that of the open recipe on side a, and those that it is compared with.
 
-    display: groom on side a
+    display:  groom on side a
+    revision: of its recipe
     """
 
     def __init__(self, publisher: Publisher) -> None:
         self._publisher = publisher
         self.display: DisplayGroom | None = None
+        self.revision = 0
         self._scene: list[VisibleMesh] = []
         self._worn: list[VisibleMesh] = []
         self._scalp: Mesh | None = None
@@ -56,7 +58,7 @@ class Viewport:
     def show(self, display: DisplayGroom, side: str, revision: int = 0) -> None:
         """Shows a groom on one side. revision: of its recipe."""
         if side == "a":
-            self.display = display
+            self.display, self.revision = display, revision
             self._show_scalp(display)
             self._show_worn(display.groom)
             self._publish_names(display.groom, display.curves)
