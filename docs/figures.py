@@ -10,6 +10,7 @@ import sys
 import tomllib
 from pathlib import Path
 
+import curl_types
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -28,6 +29,7 @@ def write_figures(folder: Path) -> None:
         "cloth": cloth,
         "contact": contact,
         "speed": speed,
+        "curl_types": curl_types.figure,
     }.items():
         with replacing(folder / f"figure_{name}.svg") as aside:
             draw().savefig(aside)

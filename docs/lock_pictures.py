@@ -18,7 +18,7 @@ from ringlet.data.quantities import Varied
 from ringlet.groom.hair_settings import HairSettings
 from ringlet.groom.operators import Grown, Locks
 
-from ringlet import Mesh, build_groom, build_hairs
+from ringlet import Curves, Mesh, build_groom, build_hairs
 from ringlet.groom import PRESETS, Recipe, make_groom, make_hairs, read_recipe
 
 TYPES = Path(__file__).parents[1] / "examples" / "types"
@@ -26,15 +26,15 @@ IMAGES = Path(__file__).parent / "images"
 PAIRS = ("2B", "3A", "3C", "4A", "4C")  # locks with and without a curl of their hairs
 
 
-def bundles(recipe: Recipe, numbers: tuple[int, ...]) -> list[list[NDArray[np.floating]]]:
-    """Hairs of hanging locks of a recipe, from the root of their lock [mm]."""
+def hanging(recipe: Recipe, per_lock: int) -> Curves:
+    """Hairs of 40 locks of a recipe that stand straight on a sheet, 12 cm tall, without its operators."""
     corners = np.array([[-0.03, 0, -0.03], [-0.03, 0, 0.03], [0.03, 0, 0.03], [0.03, 0, -0.03]])
     floor = Mesh("sheet", corners, np.array([[0, 1, 2], [0, 2, 3]]))
     assert recipe.curl is not None
     upright = {
         "seed": 5,
         "guides": Grown(count=40, length=Varied(value=0.12), lift=Varied(value=1.0), gravity_bend=Varied(value=0.0)),
-        "locks": Locks(count=40, points=500),
+        "locks": Locks(count=40),
         "shape": [],
         "scalp": recipe.scalp.model_copy(update={"region": None}),
         "curl": recipe.curl.model_copy(update={"keep": "silhouette", "phase_groups": None}),
@@ -42,12 +42,17 @@ def bundles(recipe: Recipe, numbers: tuple[int, ...]) -> list[list[NDArray[np.fl
             update={
                 "density": None,
                 "root_radius": HairSettings().root_radius,
-                "per_lock": Varied(value=50),
-                "points": 900,
+                "per_lock": Varied(value=per_lock),
+                "points": None,
             }
         ),
     }
-    hairs = make_hairs(make_groom(recipe.model_copy(update=upright), floor)).curves
+    return make_hairs(make_groom(recipe.model_copy(update=upright), floor)).curves
+
+
+def bundles(recipe: Recipe, numbers: tuple[int, ...]) -> list[list[NDArray[np.floating]]]:
+    """Hairs of hanging locks of a recipe, from the root of their lock [mm]."""
+    hairs = hanging(recipe, 50)
     locks = [np.flatnonzero(hairs.curve["lock"] == number).tolist() for number in numbers]
     return [[1e3 * (hairs[hair] - hairs[own[0]][0]) * [1, -1, 1] for hair in own] for own in locks]
 

@@ -14,10 +14,8 @@ from ringlet.motion import Words
 from ringlet.shot.material import Material
 from ringlet.sim.hanging import hang
 from ringlet.sim.strands import Strands
-from ringlet.validate.bounce import GRAVITY, LOCKS, lock
+from ringlet.validate.bounce import COILS, GRAVITY, LOCKS, lock
 from ringlet.validate.rods import strand
-
-from ringlet.groom import PRESETS
 
 STRAIGHT = (0.1, 0.2, 0.25)  # lengths [m]
 DEFAULT = Material()
@@ -58,7 +56,7 @@ def write_locks(path: Path) -> None:
         dry, twisted, wet = (words(kind, material) for material in (DEFAULT, TWISTED, WET))
         loss = 2.0 * np.log(20.0) / (dry.settle[0] * 2.0 * np.pi * dry.bounce[0])
         longer = (1.0 + wet.sag[0]) / (1.0 + dry.sag[0]) - 1.0
-        wide, pitch = (PRESETS[kind][name]["value"].removesuffix(" mm") for name in ("width", "pitch"))
+        wide, _, pitch, _, _ = COILS[kind]
         lines.append(
             f"| {kind} | {100 * length:.0f} | {wide}/{pitch} | {dry.bounce[0]:.1f} | {dry.settle[0]:.2f} | {loss:.2f} "
             f"| {dry.swing[0]:.1f} | {twisted.bounce[0]:.1f} | {wet.bounce[0]:.1f} | {100.0 * longer:.0f} % |"
