@@ -85,6 +85,7 @@ from .groom.stages import Memory as Memory
 from .host import serve as serve
 from .live import Live as Live
 from .live import Touch as Touch
+from .live import calibrate as calibrate
 from .rest.loft import Loft as Loft
 from .shot.cloth import ClothMaterial as ClothMaterial
 from .shot.contact import Contact as Contact

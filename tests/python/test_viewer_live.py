@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 import threading
 import time
 from dataclasses import replace
@@ -15,7 +16,7 @@ import pytest
 from live_memory import growth
 from pages import page, serving
 from ringlet.live.rods import VERTICES
-from ringlet.viewer.play import live_hair
+from ringlet.viewer.play import calibrator, live_hair
 from ringlet.viewer.play.head import MOTIONS, Head, Motion, clip_motion
 from ringlet.viewer.play.live_hair import LiveHair
 from ringlet.viewer.play.mover import Hand, LiveScene, Mover, neck, rods_message, step_message
@@ -103,6 +104,19 @@ def test_hair_moves_live_on_all_pages_and_rests_again(folder: Path) -> None:
         assert leader.received[-1]["kind"] != "live_step"
 
 
+def test_the_page_says_where_the_stiffness_of_contact_is_from(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(calibrator, "COMMAND", [sys.executable, "-c", "print(3e-4)"])
+    monkeypatch.setattr(calibrator, "REST", 0.3)
+    with serving(folder) as client, page(client) as leader:
+        leader.receive("measured")
+        leader.send(kind="go_live", on=True)
+        leader.receive("live", contact="default for curls")
+        leader.receive("live", contact="calibrated")
+        leader.send(kind="set", changes=[[["curl", "width"], 2.0]], gesture=1)
+        leader.receive("live", contact="default for curls")
+        leader.receive("live", contact="calibrated")
+
+
 def test_a_page_that_comes_later_sees_it_and_one_that_leaves_lets_go(folder: Path) -> None:
     with serving(folder) as client:
         with page(client) as leader:
@@ -148,6 +162,7 @@ class Slow:
     """Hair whose steps take long."""
 
     live, scene = SimpleNamespace(dt=0.02, wind=(0.0, 0.0, 0.0)), SimpleNamespace(groom=None)
+    contact = ""
 
     def __init__(self, *_: Any) -> None:
         pass
@@ -158,6 +173,9 @@ class Slow:
     def step(self, hand: Hand, seconds: float) -> str:
         time.sleep(0.05)
         return ""
+
+    def stop(self) -> None:
+        pass
 
 
 def run_slow(monkeypatch: pytest.MonkeyPatch, *, seconds: float, watched: bool, step: Any = Slow.step) -> list[Any]:

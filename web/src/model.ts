@@ -67,7 +67,7 @@ type Topic =
   | "frame"
   | "step";
 
-const NOT_LIVE: Live = { kind: "live", on: false, fps: 0, goes_on: [], wind: "" };
+const NOT_LIVE: Live = { kind: "live", on: false, fps: 0, goes_on: [], wind: "", contact: "" };
 
 export class Model {
   welcome: Welcome | null = null;

@@ -958,6 +958,7 @@ export interface Live {
   fps: number;
   goes_on: string[];
   wind: string;
+  contact: string;
 }
 
 /** The rods that carry locks in live motion, as groomed. */

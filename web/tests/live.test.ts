@@ -36,7 +36,7 @@ function stepOf(rods: RodsMessage, motion: Matrix4, more: Partial<LiveStep> = {}
   return { kind: "live_step", key: rods.key, step: 0, head, trunk: [0, 0, 0], note: "", points: moved(rods.points, motion), worn: new Float32Array(), ...more };
 }
 
-const lives = (page: Page, on: boolean, fps = 24, more: Partial<Live> = {}) => page.hear({ kind: "live", on, fps, goes_on: [], wind: "", ...more });
+const lives = (page: Page, on: boolean, fps = 24, more: Partial<Live> = {}) => page.hear({ kind: "live", on, fps, goes_on: [], wind: "", contact: "", ...more });
 const headBody = (page: Page) => page.app.viewer.stage.bodies.get(0)!.surface("a");
 
 /** The small example in live motion, its hair one step on. */
@@ -70,6 +70,16 @@ test("the key L asks for live hair, and a line says what it is", async () => {
   expect(page.last("go_live").on).toBe(false);
   page.role({ leads: false });
   expect(control<HTMLButtonElement>("Live hair").disabled).toBe(true);
+});
+
+test("the line says where the stiffness of contact is from", async () => {
+  const page = await open();
+  lives(page, true, 24, { contact: "default for curls" });
+  expect(find(".live-line .contact").textContent).toBe("contact: default for curls");
+  lives(page, true, 24, { contact: "calibrated" });
+  expect(find(".live-line").textContent).toMatch(/contact: calibrated/);
+  lives(page, true);
+  expect(find(".live-line .contact").textContent).toBe("");
 });
 
 test("hair and head follow a step, and are exactly as they were when it is off", async () => {

@@ -10,7 +10,7 @@ import { open, type Page } from "./page";
 /** The small example in live motion, its hair at rest, with the hand taken up. */
 async function withHand(): Promise<Page> {
   const page = await open();
-  page.hear({ kind: "live", on: true, fps: 24, goes_on: [], wind: "" });
+  page.hear({ kind: "live", on: true, fps: 24, goes_on: [], wind: "", contact: "" });
   const count = page.app.viewer.hair.a.locks!.ids.length;
   const points = Float32Array.from({ length: 6 * count }, (_, i) => (i % 6 === 4 ? -0.05 : 0)); // straight down
   const rods: Rods = {
@@ -101,7 +101,7 @@ test("a pointer that leaves the picture or is lost, and a hand that is taken awa
 
 test("the hand is put away when hair is at rest again", async () => {
   const page = await withHand();
-  page.hear({ kind: "live", on: false, fps: 0, goes_on: [], wind: "" });
+  page.hear({ kind: "live", on: false, fps: 0, goes_on: [], wind: "", contact: "" });
   const { hand } = page.app.tools;
   expect(hand.button.getAttribute("aria-pressed")).toBe("false");
   hand.button.click();

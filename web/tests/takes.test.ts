@@ -59,7 +59,7 @@ test("the last seconds are kept by the key K while hair moves live, with a pictu
   vi.spyOn(page.app.viewer, "drawAt").mockReturnValue(document.createElement("canvas"));
   press("k", {}, page.app.viewer.canvas);
   expect(page.said("keep_take")).toEqual([]);
-  page.hear({ kind: "live", on: true, fps: 24, goes_on: [], wind: "" });
+  page.hear({ kind: "live", on: true, fps: 24, goes_on: [], wind: "", contact: "" });
   press("k", {}, page.app.viewer.canvas);
   expect(page.last("keep_take")).toMatchObject({ picture: "AAAA", look: page.app.look.state });
   control("Keep take").click();

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ringlet import _core
 from ringlet.data.errors import UserError
-from ringlet.data.groom import Groom
+from ringlet.data.groom import STRAND_RADIUS, Groom
 from ringlet.data.mesh import Mesh
 from ringlet.data.rigid import rotation_vector
 from ringlet.live.hanging import HangingRods
@@ -31,7 +31,8 @@ from ringlet.sim.worn import worn_factors
 Array = NDArray[np.float64]
 
 GRAVITY = (0.0, -9.81, 0.0)  # [m/s²]
-CONTACT = 2.1e-4  # stiffness of the crowd about a lock, force by its length and displacement [N/m²]
+# Stiffness of the crowd about a lock, force by its length and displacement, by style [N/m²]
+CONTACT = {"curls": 2.1e-4, "locs and braids": 5e-4}
 SOLVER = Solver(newton=2, tolerance=1e-5, integrator="backward_euler")
 
 CELL, MARGIN = 0.02, 0.1  # of the grid through which neighbours share motion, and how far it goes beyond the hair [m]
@@ -60,7 +61,8 @@ class Live:
     gravity:  [m/s²]
     wind:     velocity of the air [m/s]
     fps:      steps a second
-    contact:  how firmly neighbours hold each lock: force by its length and displacement [N/m²]
+    contact:  how firmly neighbours hold each lock: force by its length and displacement [N/m²]; by default as its
+              style does, see ``default_contact``, and ``calibrate`` for another
 
     All may be changed between steps, but for the rate. Raises UserError for values that are not finite.
 
@@ -83,12 +85,15 @@ class Live:
         gravity: Sequence[float] = GRAVITY,
         wind: Sequence[float] = (0.0, 0.0, 0.0),
         fps: float = 24.0,
-        contact: float = CONTACT,
+        contact: float | None = None,
     ) -> None:
         if not fps > 0.0:
             raise UserError(f"live: fps is {fps}; must be positive")
         self.dt = 1.0 / fps
-        self._material, self._contact = material or Material(), contact
+        self._material, self._contact = (
+            material or Material(),
+            default_contact(groom)[0] if contact is None else contact,
+        )
         self._groomed_gravity = self._gravity = _vector(gravity, "gravity")
         self._wind = _vector(wind, "wind")
         self._head = self._pose = np.eye(4)
@@ -121,6 +126,11 @@ class Live:
     @trunk.setter
     def trunk(self, transform: ArrayLike | None) -> None:
         self._trunk = None if transform is None else _rigid(transform)
+
+    @property
+    def clothes(self) -> tuple[Mesh, ...]:
+        """The meshes that go with the trunk as a whole."""
+        return self._clothes
 
     @property
     def gravity(self) -> Vector:
@@ -431,6 +441,12 @@ class Live:
             chosen = lost if len(groomed) == len(lost) else np.repeat(lost, VERTICES)
             memory[name][chosen] = groomed[chosen]
         self._strands.recall(memory)
+
+
+def default_contact(groom: Groom) -> tuple[float, str]:
+    """How firmly neighbours hold a lock by default [N/m²], and the style of the groom that says so."""
+    style = "locs and braids" if STRAND_RADIUS in groom.locks.curve else "curls"
+    return CONTACT[style], style
 
 
 def _moved(points: Array, transform: Array) -> Array:

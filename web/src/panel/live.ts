@@ -40,6 +40,7 @@ export class LiveHair {
     h("button", { type: "button", class: "quiet", title, "data-motion": motion, onclick: () => this.model.say({ kind: "move_head", motion }) }, label),
   );
   private readonly wind = h("select", { "aria-label": "Wind" }, ...SIDES.map(([side, label]) => h("option", { value: side }, label)));
+  private readonly contact = h("span", { class: "contact", title: "What contact adds to the stiffness of locks: by default, or found in the background from a short run in contact" });
   private readonly cut = h("span", { class: "cut-off", role: "status" });
   private rods: Rods | null = null;
   private step: LiveStep | null = null;
@@ -57,7 +58,7 @@ export class LiveHair {
   ) {
     this.button.setAttribute("aria-pressed", "false");
     this.buttons.append(...this.motions, this.wind);
-    this.line.append(this.buttons, CAUTION, this.rate, this.cut);
+    this.line.append(this.buttons, CAUTION, this.contact, this.rate, this.cut);
     this.wind.addEventListener("change", () => model.say({ kind: "blow", side: this.wind.value as Blow["side"] }));
     bindKey({ section: "View", keys: "L", does: "let hair move live, or put it at rest", on: plainKey("l"), run: () => this.toggle() });
     model.on("live", () => this.turned());
@@ -97,6 +98,7 @@ export class LiveHair {
       if (name === "clip") motion.toggleAttribute("hidden", this.model.welcome?.mode !== "shot");
     }
     this.wind.value = live.wind;
+    this.contact.textContent = live.contact && `contact: ${live.contact}`;
     if (!live.on) this.rods = this.step = this.shown = null;
     if (!this.step) this.viewer.putAtRest(); // a frame of a shot may be seen
   }

@@ -114,6 +114,10 @@ class LiveHair:
         if stopping is self._stopping and self.on:
             self._publish(self._state.model_copy(update={"fps": fps}))
 
+    def _knows_contact(self, stopping: threading.Event, contact: str) -> None:
+        if stopping is self._stopping and self.on:
+            self._publish(self._state.model_copy(update={"contact": contact}))
+
     def _announce(self, stopping: threading.Event, rods: bytes) -> None:
         if stopping is self._stopping and self.on:
             self._publisher.publish("live/rods", rods)
@@ -133,8 +137,14 @@ class LiveHair:
                 self._call(self._end, stopping)
 
     def _move(self, scene: LiveScene, stopping: threading.Event) -> None:
-        mover, hand = Mover(scene, self._no_clip), self._hand
-        dt = mover.live.dt
+        mover = Mover(scene, self._no_clip)
+        try:
+            self._step(mover, stopping)
+        finally:
+            mover.stop()
+
+    def _step(self, mover: Mover, stopping: threading.Event) -> None:
+        hand, dt, contact = self._hand, mover.live.dt, ""
         key = self._send_rods(mover, stopping)
         self._call(self._prepared, stopping, 1.0 / dt)
         step, late, due = 0, 0, time.monotonic()
@@ -145,6 +155,9 @@ class LiveHair:
                 continue
             if self._scene is not None and mover.change(self._scene):
                 key = self._send_rods(mover, stopping)
+            if mover.contact != contact:
+                contact = mover.contact
+                self._call(self._knows_contact, stopping, contact)
             note = mover.step(hand, (1 + late) * dt)
             if not stopping.is_set():
                 message = step_message(key, step, mover, note)

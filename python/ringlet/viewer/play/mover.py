@@ -14,10 +14,11 @@ from ringlet import sim
 from ringlet.api.live import clothes_of, head_motion, live_shot
 from ringlet.data.errors import UserError
 from ringlet.groom import Groom
-from ringlet.live import Live, Touch
+from ringlet.live import Calibration, Live, Touch, default_contact
 from ringlet.live.neck import neck
-from ringlet.shot import Shot
+from ringlet.shot import Shot, ShotContact
 from ringlet.viewer import protocol
+from ringlet.viewer.play.calibrator import Calibrator
 from ringlet.viewer.play.head import MOTIONS, Head, clip_motion
 from ringlet.viewer.show.display_groom import DisplayGroom
 from ringlet.viewer.show.scene import VisibleMesh
@@ -71,6 +72,8 @@ class Mover:
     """Live hair of a scene with its head.
 
     failed: hears of a clip that cannot be read
+
+    ``contact`` says where the stiffness that contact adds is from.
     """
 
     def __init__(self, scene: LiveScene, failed: Callable[[str], None]) -> None:
@@ -80,10 +83,24 @@ class Mover:
         self.head = Head(neck(scene.groom))
         self._began: protocol.TouchHair | None = None
         self._gust, self._time, self._wind = np.zeros(3), 0.0, np.array(live.wind)
+        self._calibrator = Calibrator()
+        self._use_default_contact()
+
+    def stop(self) -> None:
+        """Ends what goes on besides the steps."""
+        self._calibrator.stop()
+
+    def _calibration(self) -> Calibration:
+        """What the contact of its hair is found from."""
+        live, shot = self.live, self.scene.shot
+        touching = (shot.touching if shot is not None else None) or ShotContact()
+        return Calibration(live.groom, live.material, live.clothes, live.gravity, 1.0 / live.dt, touching)
 
     def change(self, now: LiveScene) -> bool:
-        """Goes on with what is new in a scene; returns whether its rods are others."""
+        """Goes on with what is new in a scene, with the contact by default; returns whether its rods are others."""
         live, before, self.scene = self.live, self.scene, now
+        if now is before:
+            return False
         other = now.groom is not before.groom
         if now.shot is not None and before.shot is not None and now.shot is not before.shot:
             live.material, live.gravity = now.shot.strands, now.shot.forces.gravity
@@ -91,10 +108,21 @@ class Mover:
             other = other or bool(now.shot.motion.given or before.shot.motion.given)  # its words are factors of locks
         if other:
             live.groom = now.groom if now.shot is None else sim.with_words(now.shot, now.groom)
+        self._use_default_contact()
         return other
+
+    def _use_default_contact(self) -> None:
+        """Neighbours hold locks by default until it is known how they do."""
+        contact, style = default_contact(self.live.groom)
+        if self.live.contact != contact:
+            self.live.contact = contact
+        self.contact = f"default for {style}"
+        self._calibrator.change(self._calibration)
 
     def step(self, hand: Hand, seconds: float) -> str:
         """Takes over what the hand does, and steps once after some time; returns what was cut off."""
+        if (contact := self._calibrator.poll()) is not None:
+            self.live.contact, self.contact = contact, "calibrated"
         while not hand.motions.empty():
             self._play(hand.motions.get())
         if (held := hand.held) is not None:

@@ -64,6 +64,7 @@ class Live(Message):
     fps:   steps a second; 0 while the first one is being prepared
     goes_on: motions that play until they are stopped
     wind:  side that it blows from; empty for none
+    contact: where the stiffness that contact adds is from; empty while that is not known
     """
 
     kind: Literal["live"] = "live"
@@ -71,6 +72,7 @@ class Live(Message):
     fps: float = 0.0
     goes_on: list[str] = Field(default_factory=list)
     wind: str = ""
+    contact: str = ""
 
 
 class Rods(Message):
