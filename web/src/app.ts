@@ -11,6 +11,7 @@ import { bindKey, plainKey } from "./panel/keys";
 import { HeadHandle } from "./panel/head_handle";
 import { Lens } from "./panel/lens";
 import { LiveHair } from "./panel/live";
+import { LiveSides } from "./panel/live_sides";
 import { LockTool } from "./panel/lock";
 import { Look } from "./panel/look";
 import { Notes } from "./panel/notes";
@@ -64,6 +65,7 @@ export class App {
     // What is in the hand, and how the groom is looked at
     this.lock = new LockTool(model, viewer);
     const live = (this.live = new LiveHair(model, viewer)); // a frame is shown again once hair is at rest
+    new LiveSides(model, viewer);
     this.timeline = new TimelineBar(model, viewer, (frame) => this.status.simulated(frame.statistics));
     const sheets = new Sheets(model);
     this.tools = new HandTools(model, viewer, () => {
@@ -85,7 +87,7 @@ export class App {
     const snapshots = new Snapshots(model, viewer, this.look, this.tray);
     const takes = new TakePlayer(model, viewer, this.timeline, () => snapshots.take("keep_take"));
     snapshots.play = (id) => takes.play(id);
-    live.line.append(takes.keep);
+    live.buttons.append(takes.keep);
     const notes = new Notes(model, viewer, this.look, this.tray);
     const references = new References(model, viewer, this.tray, this.notices);
     this.tray.opened = () => sheets.open("");

@@ -964,6 +964,7 @@ export interface Live {
 /** The rods that carry locks in live motion, as groomed. */
 export interface Rods {
   kind: "rods";
+  side: "a" | "b" | "c" | "d";
   key: number;
   pivot: [number, number, number];
   points: Float32Array;
@@ -975,6 +976,7 @@ export interface Rods {
 /** A step of live hair: where the vertices of its rods are. */
 export interface LiveStep {
   kind: "live_step";
+  side: "a" | "b" | "c" | "d";
   key: number;
   step: number;
   head: number[];

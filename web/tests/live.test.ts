@@ -15,7 +15,7 @@ const TURN = new Matrix4().makeRotationY(0.4).setPosition(0.01, 0.02, 0.03);
 function rodsOf(count: number, key = 1): RodsMessage {
   const points = Array.from({ length: count * VERTICES }, (_, i) => [0.02 * Math.sin(i), 0.1 - 0.02 * (i % VERTICES), 0.01 * Math.floor(i / VERTICES)]);
   return {
-    ...{ kind: "rods", key, pivot: [0, -1, 0], along: Float32Array.from([0, 0.1, 0.5, 1]) },
+    ...{ kind: "rods", side: "a", key, pivot: [0, -1, 0], along: Float32Array.from([0, 0.1, 0.5, 1]) },
     ...{ points: Float32Array.from(points.flat()), carrier: Uint32Array.from({ length: count }, (_, k) => k) },
     axis: Float32Array.from(Array.from({ length: count }, () => [1, 0.3, 0.2]).flat()),
   };
@@ -33,7 +33,7 @@ function moved(points: Float32Array, motion: Matrix4): Float32Array {
 /** A step in which everything has made a motion with the head. */
 function stepOf(rods: RodsMessage, motion: Matrix4, more: Partial<LiveStep> = {}): LiveStep {
   const head = motion.clone().transpose().elements.slice(0, 12);
-  return { kind: "live_step", key: rods.key, step: 0, head, trunk: [0, 0, 0], note: "", points: moved(rods.points, motion), worn: new Float32Array(), ...more };
+  return { kind: "live_step", side: "a", key: rods.key, step: 0, head, trunk: [0, 0, 0], note: "", points: moved(rods.points, motion), worn: new Float32Array(), ...more };
 }
 
 const lives = (page: Page, on: boolean, fps = 24, more: Partial<Live> = {}) => page.hear({ kind: "live", on, fps, goes_on: [], wind: "", contact: "", ...more });

@@ -14,11 +14,11 @@ async function withHand(): Promise<Page> {
   const count = page.app.viewer.hair.a.locks!.ids.length;
   const points = Float32Array.from({ length: 6 * count }, (_, i) => (i % 6 === 4 ? -0.05 : 0)); // straight down
   const rods: Rods = {
-    ...{ kind: "rods", key: 1, pivot: [0, -1, 0], along: Float32Array.from([0, 1]), points },
+    ...{ kind: "rods", side: "a", key: 1, pivot: [0, -1, 0], along: Float32Array.from([0, 1]), points },
     ...{ carrier: Uint32Array.from({ length: count }, (_, k) => k), axis: Float32Array.from({ length: 3 * count }, (_, i) => (i % 3 ? 0 : 1)) },
   };
   page.hear(rods);
-  const still: LiveStep = { kind: "live_step", key: 1, step: 0, head: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0], trunk: [0, 0, 0], note: "", points, worn: new Float32Array() };
+  const still: LiveStep = { kind: "live_step", side: "a", key: 1, step: 0, head: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0], trunk: [0, 0, 0], note: "", points, worn: new Float32Array() };
   page.hear(still);
   vi.advanceTimersByTime(50);
   page.app.viewer.frame(0, 0);

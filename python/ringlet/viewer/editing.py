@@ -145,12 +145,11 @@ class Editing:
         self._publisher.publish(f"document/{file}", document_message(self._files, file))
         if file == "recipe":
             self._grooming.request(draft=not resting)
-            if resting:
-                self._comparer.recompute()
         else:
             self._playback.publish_timeline()
             self._changed()
         if resting:
+            self._comparer.recompute()
             self._rest.cancel()
         else:  # the hand may never be heard to rest
             self._rest.restart(self.settle)

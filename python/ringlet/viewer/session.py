@@ -7,6 +7,7 @@ import secrets
 from collections import Counter
 from collections.abc import Callable
 from concurrent.futures import Future
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -38,7 +39,7 @@ from ringlet.viewer.show.display_groom import DisplayGroom
 from ringlet.viewer.show.grooming import Grooming
 from ringlet.viewer.show.lights import live_rigs_of
 from ringlet.viewer.show.rendering import Rendering
-from ringlet.viewer.show.scene import read_scene
+from ringlet.viewer.show.scene import read_scene, worn_meshes
 from ringlet.viewer.show.stage_cameras import StageCameras
 from ringlet.viewer.show.viewport import Viewport
 from ringlet.viewer.wire import pack
@@ -70,7 +71,7 @@ class Session:
         notice, trouble = self.pages.notice, self.pages.trouble
         self._grooming = Grooming(project, self.publisher, self.problems, self._call, self._show, trouble)
         self._review = Reviewing(project, self.publisher, notice)
-        self._comparer = Comparer(project, self.publisher, self._call)
+        self._comparer = Comparer(project, self.publisher, self._call, self._show_live)
         self._rendering, self._sharer = Rendering(project), Sharer(project)
         self._motions = LockMotions()
         self._live = LiveHair(self.publisher, self._call, trouble, lambda: len(self.pages) > 0)
@@ -240,10 +241,20 @@ class Session:
         shot = self.files.shot if self.files.mode == "shot" else None
         return LiveScene.of(self._viewport.made("live"), shot, self._viewport.bodies)
 
+    def _compared_scenes(self) -> dict[protocol.Side, LiveScene]:
+        """The compared looks that move live, but for takes, which play."""
+        scenes: dict[protocol.Side, LiveScene] = {}
+        for side, (asked, display) in self._comparer.shown.items():
+            shot = asked.shot.model if asked.shot else self.files.shot if self.files.mode == "shot" else None
+            with suppress(UserError):  # there are no locks
+                if not asked.take:
+                    scenes[side] = LiveScene.of(display, shot, worn_meshes(display.groom))
+        return scenes
+
     def _show_live(self) -> None:
         """Hair that moves live goes on with what has changed."""
         if self._live.on:
-            self._live.show(self._live_scene())
+            self._live.show(self._live_scene(), self._compared_scenes())
 
     def _keep_take(self, message: protocol.KeepTake) -> None:
         """Keeps the last seconds of live hair; raises UserError where the groom that moved is not the open one."""
@@ -319,7 +330,7 @@ class Session:
                 self._playback.play(message)
             case protocol.GoLive():
                 if message.on:
-                    self._live.start(self._live_scene())
+                    self._live.start(self._live_scene(), self._compared_scenes())
                 else:
                     self._live.stop()
             case protocol.MoveHead():

@@ -3,7 +3,7 @@
 import { Vector3 } from "three";
 import { h } from "../dom";
 import type { Model } from "../model";
-import { onScreen, pixelsPerMetre } from "../view/pick";
+import { pixelsPerMetre } from "../view/pick";
 import type { Viewer } from "../view/viewer";
 
 const ABOVE = 18; // of the hair [pixels]
@@ -56,14 +56,13 @@ export class HeadHandle {
   place(): void {
     const { element, viewer, model } = this;
     const { box } = viewer.hair.a;
-    element.hidden = !model.live.fps || !model.role.leads || viewer.compared || box.isEmpty();
-    if (element.hidden) {
+    const at = box.isEmpty() ? null : viewer.seenAt(box.getCenter(new Vector3()).setY(box.max.y));
+    element.hidden = !model.live.fps || !model.role.leads || !at;
+    if (!at || element.hidden) {
       this.letGo();
       return;
     }
-    const top = box.getCenter(new Vector3()).setY(box.max.y);
-    const { x, y } = onScreen(top, viewer.camera, viewer.size);
-    element.style.translate = `${x}px ${Math.max(y - ABOVE, ABOVE)}px`;
+    element.style.translate = `${at.x}px ${Math.max(at.y - ABOVE, ABOVE)}px`;
   }
 
   /** The head goes with the hand, as it is seen from the camera. */

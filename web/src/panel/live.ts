@@ -4,7 +4,7 @@ import "./live.css";
 import { h, iconButton } from "../dom";
 import type { Model } from "../model";
 import type { Blow, LiveStep, MoveHead } from "../protocol";
-import { headOf, Rods } from "../view/rods";
+import { headOf, Rods, sameStep } from "../view/rods";
 import { Vector3 } from "three";
 import type { Viewer } from "../view/viewer";
 import { bindKey, plainKey } from "./keys";
@@ -25,7 +25,6 @@ const SIDES: [Blow["side"], string][] = [
   ["back", "wind from behind"],
 ];
 
-const STILL = 2e-5; // way of a vertex in a step that is not seen [m]
 const EASED = 1000; // time in which hair has gone over to another groom [ms]
 const SAID_FOR = 6000; // [ms]
 const CAUTION = "Live: locks may pass through one another";
@@ -66,6 +65,7 @@ export class LiveHair {
       for (const control of [this.button, ...this.motions, this.wind]) control.toggleAttribute("disabled", !model.role.leads);
     });
     model.hear("rods", (message) => {
+      if (message.side !== "a") return; // of a look that is compared
       this.rods = new Rods(message);
       this.changed = performance.now();
       this.step = null;
@@ -105,7 +105,7 @@ export class LiveHair {
 
   /** A step has come; it is shown with the next picture, where a later one does not replace it. */
   private take(step: LiveStep): void {
-    if (!this.model.live.on || step.key !== this.rods?.message.key) return;
+    if (!this.model.live.on || step.side !== "a" || step.key !== this.rods?.message.key) return;
     this.step = step;
     if (step.note) this.say(step.note);
     if (this.waiting) return;
@@ -128,9 +128,7 @@ export class LiveHair {
   /** Whether the step is not seen to differ from the one that is shown. */
   private get stands(): boolean {
     const { shown, step } = this;
-    if (!shown || !step || shown.key !== step.key || performance.now() - this.changed < EASED) return false;
-    const near = (a: ArrayLike<number>, b: ArrayLike<number>) => Array.prototype.every.call(a, (x: number, i) => Math.abs(x - b[i]) < STILL);
-    return near(step.head, shown.head) && near(step.trunk, shown.trunk) && near(step.points, shown.points);
+    return shown !== null && step !== null && performance.now() - this.changed >= EASED && sameStep(step, shown);
   }
 
   private show(): void {

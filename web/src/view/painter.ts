@@ -181,7 +181,7 @@ export class Painter {
   }
 
   /** What is over the picture goes by this camera. */
-  private aimAtAll(view: OrbitCamera): void {
+  aimAtAll(view: OrbitCamera): void {
     view.aim({ canvas: { x: 0, y: 0, ...this.canvas }, clear: this.clear, zoom: 1 });
   }
 

@@ -84,6 +84,14 @@ export function headOf({ head }: LiveStep): Matrix4 {
   return new Matrix4().set(...([...head, 0, 0, 0, 1] as Parameters<Matrix4["set"]>));
 }
 
+const STILL = 2e-5; // way of a vertex in a step that is not seen [m]
+
+/** Whether two steps are not seen to differ. */
+export function sameStep(a: LiveStep, b: LiveStep): boolean {
+  const near = (one: ArrayLike<number>, other: ArrayLike<number>) => Array.prototype.every.call(one, (x: number, i) => Math.abs(x - other[i]) < STILL);
+  return a.key === b.key && near(a.head, b.head) && near(a.trunk, b.trunk) && near(a.points, b.points);
+}
+
 function boxOf(points: Float32Array): Box3 {
   const box = new Box3();
   const place = new Vector3();

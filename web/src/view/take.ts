@@ -10,7 +10,7 @@ export class Take {
 
   constructor(readonly message: LiveTake) {
     const { pivot, points, along, axis, carrier } = message;
-    this.rods = new Rods({ kind: "rods", key: 0, pivot, points, along, axis, carrier });
+    this.rods = new Rods({ kind: "rods", side: "a", key: 0, pivot, points, along, axis, carrier });
   }
 
   /** How many steps it takes, with those that were left out. */

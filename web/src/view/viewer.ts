@@ -15,6 +15,7 @@ import { OrbitCamera } from "./orbit_camera";
 import { ALL_AT_ONCE, Clock, Pace, type Portion } from "./pace";
 import { Painter } from "./painter";
 import { complete, type Work } from "./slices";
+import { onScreen } from "./pick";
 import { Stage } from "./stage";
 
 const REST_AFTER = 180; // time without a movement after which the picture rests [ms]
@@ -188,6 +189,17 @@ export class Viewer {
     this.view.lookFrom(place, focalLength);
     this.onLook();
     this.invalidate();
+  }
+
+  /** Where a place of the open look, or of the one in its place, is seen [pixels]; null where it is not. */
+  seenAt(place: Vector3): { x: number; y: number } | null {
+    const { looks, view, painter, camera } = this;
+    const cell = looks.cells(this.size, this.clear).find(({ side }) => side === "a" || looks.arrangement === "flip");
+    if (!cell) return null;
+    view.aim(cell);
+    const { x, y } = onScreen(place, camera, cell.canvas);
+    painter.aimAtAll(view);
+    return { x: cell.canvas.x + x, y: cell.canvas.y + y };
   }
 
   /** Does something with the open look alone, after which the camera is where it was. */

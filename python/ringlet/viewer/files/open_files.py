@@ -42,9 +42,7 @@ class Files:
         self.mode, recipe = "recipe", path
         if "groom" in data and "frames" in data:
             self.mode = "shot"
-            self.documents["shot"] = Document(
-                self.file, lambda text, _: shot_inside(project, text, path), history=self._history
-            )
+            self.documents["shot"] = Document(self.file, lambda text, _: self.parse_shot(text), history=self._history)
             recipe = project.inside(self.shot.groom, f"{path.name}: groom")
         if recipe.suffix == ".toml":
             edits = text_of_edits(self.parse(read_text(recipe, "give a recipe file"), recipe).edits_file)
@@ -55,6 +53,10 @@ class Files:
     def parse(self, text: str, path: Path, edits: str = "") -> Recipe:
         """Parses a recipe of the project, with the text of its file of edits; raises UserError as ``recipe_inside``."""
         return recipe_inside(self.project, text, path, edits)
+
+    def parse_shot(self, text: str) -> Shot:
+        """Parses the open shot with another text; raises UserError as ``shot_inside``."""
+        return shot_inside(self.project, text, self.file)
 
     def document(self, file: File) -> Document:
         """The open file of a kind, ``recipe`` or ``shot``; raises UserError when none is open."""

@@ -6,12 +6,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
+from typing import NamedTuple
 
 from ringlet.data.errors import UserError, failure
 from ringlet.data.regular import read_text
 from ringlet.groom import Recipe
+from ringlet.shot import Shot
 from ringlet.viewer import protocol
-from ringlet.viewer.files.compared_settings import settings_text
+from ringlet.viewer.files.compared_settings import settings_of_text, settings_text
 from ringlet.viewer.files.open_files import Files
 from ringlet.viewer.keep.reviewing import Reviewing
 from ringlet.viewer.project import Project
@@ -23,12 +25,20 @@ from ringlet.viewer.wire import pack, trouble
 from ringlet.viewer.worker import LatestTaskWorker, Stale
 
 
+class OwnShot(NamedTuple):
+    """The shot of a look that is compared, where it is not the open one as it is."""
+
+    text: str
+    model: Shot
+
+
 @dataclass(frozen=True)
 class Comparison:
     """A request for a groom to compare with: a recipe, its muted stages, its name, and the page that asks.
 
     detail: author and time of a snapshot
     take:   id of a snapshot whose take of live hair plays; empty for none
+    shot:   that it moves live in; None for the open one as it is
     """
 
     side: Side
@@ -38,24 +48,36 @@ class Comparison:
     detail: str
     page: SendQueue
     take: str = ""
+    shot: OwnShot | None = None
+
+
+class Shown(NamedTuple):
+    """A groom that is compared, and what asked for it."""
+
+    asked: Comparison
+    display: DisplayGroom
 
 
 class Comparer:
     """Makes the grooms on the sides b, c and d of the viewport. Public methods run on the session's thread.
 
-    call: runs a function on the session's thread
+    call:    runs a function on the session's thread
+    changed: called there after other grooms are shown
+    shown:   the grooms by their sides
     """
 
-    def __init__(self, project: Project, publisher: Publisher, call: Callable[..., None]) -> None:
-        self._project, self._publisher, self._call = project, publisher, call
+    def __init__(
+        self, project: Project, publisher: Publisher, call: Callable[..., None], changed: Callable[[], None]
+    ) -> None:
+        self._project, self._publisher, self._call, self._changed = project, publisher, call, changed
         self._workers: dict[Side, LatestTaskWorker[Comparison]] = {}
         self._evaluators: dict[Side, GroomEvaluator] = {}
-        self._shown: dict[Side, Comparison] = {}
+        self.shown: dict[Side, Shown] = {}
 
     def open(self, files: Files, viewport: Viewport, review: Reviewing) -> None:
         """Compares with other files from now on."""
         self._files, self._viewport, self._review = files, viewport, review
-        self._shown = {}
+        self.shown = {}
 
     def compare(self, message: protocol.Compare, page: SendQueue) -> None:
         """Shows a groom on a side as soon as it is made; raises UserError for a recipe that cannot be read."""
@@ -76,7 +98,8 @@ class Comparer:
         none = frozenset[str]()
         if message.to == "saved":
             recipe = files.parse(document.saved, document.path, document.saved_edits)
-            return Comparison(message.side, recipe, none, "as saved", _written(document.path), page)
+            when, shot = _written(document.path), self._own_shot(saved=True)
+            return Comparison(message.side, recipe, none, "as saved", when, page, shot=shot)
         if message.to == "snapshot":
             recipe, muted, name, detail = self._review.snapshot_to_compare(message.name)
             take = message.name if self._review.snapshots[message.name].seconds else ""
@@ -85,16 +108,36 @@ class Comparer:
             path = self._project.inside(message.name, "compare")
             recipe = files.parse(read_text(path, "choose a recipe of the project"), path)
             return Comparison(message.side, recipe, none, path.name, "", page)
-        return Comparison(message.side, document.model, files.without_effect, "as it was", "", page)
+        shot = self._own_shot(saved=False)
+        return Comparison(message.side, document.model, files.without_effect, "as it was", "", page, shot=shot)
+
+    def _own_shot(self, *, saved: bool) -> OwnShot | None:
+        """The open shot as it is now, or as it is saved, which the look keeps; None without a shot."""
+        files = self._files
+        if files.mode != "shot":
+            return None
+        document = files.document("shot")
+        return (
+            OwnShot(document.saved, files.parse_shot(document.saved)) if saved else OwnShot(document.text, files.shot)
+        )
 
     def recompute(self) -> None:
-        """Publishes the settings of the open recipe again, after an edit."""
-        if self._shown:
-            document = self._files.recipe
-            now = protocol.Compared(
-                side="a", name="now", detail=document.path.name, settings=settings_text(document.model)
-            )
-            self._announce(now)
+        """Publishes the settings of the open recipe and shot again, after an edit."""
+        if not self.shown:
+            return
+        document = self._files.recipe
+        settings = self._settings(document.model, None)
+        self._announce(protocol.Compared(side="a", name="now", detail=document.path.name, settings=settings))
+        for asked, _ in self.shown.values():
+            if asked.shot is None and self._files.mode == "shot":
+                self._announce_asked(asked)
+
+    def _settings(self, recipe: Recipe, shot: OwnShot | None) -> dict[str, str]:
+        """Settings of a recipe, and of the shot that it moves in, None for the open one."""
+        if self._files.mode != "shot":
+            return settings_text(recipe)
+        text = shot.text if shot else self._files.document("shot").text
+        return {**settings_of_text(text), **settings_text(recipe)}
 
     def cancel(self) -> None:
         """Cancels the grooms that are being made."""
@@ -121,15 +164,18 @@ class Comparer:
             asked.page.put("trouble", trouble(failure("a groom to compare with could not be made", error)))
 
     def _show(self, asked: Comparison, display: DisplayGroom) -> None:
-        self._shown[asked.side] = asked
+        self.shown[asked.side] = Shown(asked, display)
         self.recompute()
-        settings = settings_text(asked.recipe)
-        self._announce(
-            protocol.Compared(side=asked.side, name=asked.name, detail=asked.detail, settings=settings, take=asked.take)
-        )
+        self._announce_asked(asked)
         self._viewport.show(display, asked.side)
         if asked.take:
             self._play(asked)
+        self._changed()
+
+    def _announce_asked(self, asked: Comparison) -> None:
+        settings = self._settings(asked.recipe, asked.shot)
+        named = {"side": asked.side, "name": asked.name, "detail": asked.detail, "take": asked.take}
+        self._announce(protocol.Compared.model_validate({**named, "settings": settings}))
 
     def _play(self, asked: Comparison) -> None:
         """Lets pages play a take on the side of its groom."""
@@ -145,9 +191,10 @@ class Comparer:
     def _clear(self, side: Side) -> None:
         """Removes the groom on a side."""
         self._viewport.clear_compared(side)
-        self._shown.pop(side, None)
         if side in self._workers:
             self._workers[side].cancel()
+        if self.shown.pop(side, None):
+            self._changed()
 
     def _announce(self, message: protocol.Compared) -> None:
         self._publisher.publish(f"{message.side}/none", pack(message))

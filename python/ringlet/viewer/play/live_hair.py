@@ -5,13 +5,16 @@ from __future__ import annotations
 import math
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
 
 from ringlet.data.errors import UserError, failure
 from ringlet.viewer import protocol
 from ringlet.viewer.play.head import MOTIONS
 from ringlet.viewer.play.mover import Hand, LiveScene, Mover, rods_message, step_message
+from ringlet.viewer.play.side_by_side import Followers
 from ringlet.viewer.play.takes import TakeRing
+from ringlet.viewer.protocol import Side
 from ringlet.viewer.publisher import Publisher
 from ringlet.viewer.wire import pack
 
@@ -36,6 +39,7 @@ class LiveHair:
     ) -> None:
         self._publisher, self._call, self._failed, self._watched = publisher, call, failed, watched
         self._scene: LiveScene | None = None
+        self._compared: Mapping[Side, LiveScene] = {}
         self._stopping = threading.Event()
         self._thread: threading.Thread | None = None
         self._hand, self._state = Hand(), protocol.Live(on=False)
@@ -47,18 +51,19 @@ class LiveHair:
         """Whether hair moves live."""
         return self._thread is not None
 
-    def start(self, scene: LiveScene) -> None:
-        """Lets a scene move, from rest."""
+    def start(self, scene: LiveScene, compared: Mapping[Side, LiveScene] = MappingProxyType({})) -> None:
+        """Lets a scene move, from rest, and those that are compared with it, by side."""
         if self.on:
             return
         self._scene, self._hand, self._stopping = scene, Hand(), threading.Event()
+        self._compared = compared
         self._thread = threading.Thread(target=self._run, args=(scene, self._stopping), name="live", daemon=True)
         self._publish(protocol.Live(on=True))
         self._thread.start()
 
-    def show(self, scene: LiveScene) -> None:
-        """Goes on with another scene, if hair moves live."""
-        self._scene = scene
+    def show(self, scene: LiveScene, compared: Mapping[Side, LiveScene] = MappingProxyType({})) -> None:
+        """Goes on with other scenes, if hair moves live."""
+        self._scene, self._compared = scene, compared
 
     def hold(self, message: protocol.HoldHead | protocol.TouchHair) -> None:
         """A hand holds the head in a pose, touches the hair, or lets go."""
@@ -118,9 +123,13 @@ class LiveHair:
         if stopping is self._stopping and self.on:
             self._publish(self._state.model_copy(update={"contact": contact}))
 
-    def _announce(self, stopping: threading.Event, rods: bytes) -> None:
-        if stopping is self._stopping and self.on:
-            self._publisher.publish("live/rods", rods)
+    def _announce(self, stopping: threading.Event, rods: bytes | None, side: Side = "a") -> None:
+        if stopping is not self._stopping or not self.on:
+            return
+        if rods is None:
+            self._publisher.clear(f"live/{side}/")
+        else:
+            self._publisher.publish(f"live/{side}/rods", rods)
 
     def _end(self, stopping: threading.Event) -> None:
         if stopping is self._stopping:
@@ -137,13 +146,14 @@ class LiveHair:
                 self._call(self._end, stopping)
 
     def _move(self, scene: LiveScene, stopping: threading.Event) -> None:
-        mover = Mover(scene, self._no_clip)
+        mover, followers = Mover(scene, self._no_clip), Followers(lambda why: self._call(self._failed, why))
         try:
-            self._step(mover, stopping)
+            self._step(mover, followers, stopping)
         finally:
             mover.stop()
+            followers.stop()
 
-    def _step(self, mover: Mover, stopping: threading.Event) -> None:
+    def _step(self, mover: Mover, followers: Followers, stopping: threading.Event) -> None:
         hand, dt, contact = self._hand, mover.live.dt, ""
         key = self._send_rods(mover, stopping)
         self._call(self._prepared, stopping, 1.0 / dt)
@@ -158,11 +168,16 @@ class LiveHair:
             if mover.contact != contact:
                 contact = mover.contact
                 self._call(self._knows_contact, stopping, contact)
+            for side, rods in followers.change(self._compared, mover, self._new_key):
+                self._call(self._announce, stopping, rods, side)
             note = mover.step(hand, (1 + late) * dt)
             if not stopping.is_set():
                 message = step_message(key, step, mover, note)
                 self.recent.add(message, mover.live.wind)
-                self._publisher.send("live/step", message)
+                self._publisher.send("live/a/step", message)
+            for side, message in followers.step(mover, hand, step):
+                if not stopping.is_set():
+                    self._publisher.send(f"live/{side}/step", message)
             late = max(0, math.floor((time.monotonic() - due) / dt))  # steps to leave out, so that time goes on
             step, due = step + 1 + late, due + (1 + late) * dt
             stopping.wait(max(0.0, due - time.monotonic()))
@@ -174,9 +189,13 @@ class LiveHair:
 
     def _send_rods(self, mover: Mover, stopping: threading.Event) -> int:
         """Tells pages which rods follow; returns their key."""
-        self._key += 1
-        message = rods_message(self._key, mover)
+        key = self._new_key()
+        message = rods_message(key, mover)
         if not stopping.is_set():
             self.recent.begin(message, mover.scene.groom, 1.0 / mover.live.dt)
         self._call(self._announce, stopping, message)
+        return key
+
+    def _new_key(self) -> int:
+        self._key += 1
         return self._key

@@ -20,6 +20,7 @@ from ringlet.shot import Shot, ShotContact
 from ringlet.viewer import protocol
 from ringlet.viewer.play.calibrator import Calibrator
 from ringlet.viewer.play.head import MOTIONS, Head, clip_motion
+from ringlet.viewer.protocol import Side
 from ringlet.viewer.show.display_groom import DisplayGroom
 from ringlet.viewer.show.scene import VisibleMesh
 from ringlet.viewer.wire import pack
@@ -72,6 +73,7 @@ class Mover:
     """Live hair of a scene with its head.
 
     failed: hears of a clip that cannot be read
+    gust:   velocity of the wind of a side now [m/s], shape (3,)
 
     ``contact`` says where the stiffness that contact adds is from.
     """
@@ -82,7 +84,7 @@ class Mover:
         self.live = live = live_shot(shot, groom) if shot is not None else Live(groom, clothes=clothes_of(groom))
         self.head = Head(neck(scene.groom))
         self._began: protocol.TouchHair | None = None
-        self._gust, self._time, self._wind = np.zeros(3), 0.0, np.array(live.wind)
+        self.gust, self._time, self._wind = np.zeros(3), 0.0, np.array(live.wind)
         self._calibrator = Calibrator()
         self._use_default_contact()
 
@@ -99,7 +101,7 @@ class Mover:
     def change(self, now: LiveScene) -> bool:
         """Goes on with what is new in a scene, with the contact by default; returns whether its rods are others."""
         live, before, self.scene = self.live, self.scene, now
-        if now is before:
+        if now.groom is before.groom and now.shot is before.shot:
             return False
         other = now.groom is not before.groom
         if now.shot is not None and before.shot is not None and now.shot is not before.shot:
@@ -119,10 +121,13 @@ class Mover:
         self.contact = f"default for {style}"
         self._calibrator.change(self._calibration)
 
-    def step(self, hand: Hand, seconds: float) -> str:
-        """Takes over what the hand does, and steps once after some time; returns what was cut off."""
+    def _use_found_contact(self) -> None:
         if (contact := self._calibrator.poll()) is not None:
             self.live.contact, self.contact = contact, "calibrated"
+
+    def step(self, hand: Hand, seconds: float) -> str:
+        """Takes over what the hand does, and steps once after some time; returns what was cut off."""
+        self._use_found_contact()
         while not hand.motions.empty():
             self._play(hand.motions.get())
         if (held := hand.held) is not None:
@@ -132,11 +137,25 @@ class Mover:
         self.head.advance(seconds)
         self._time += seconds
         blows = np.array(SIDES[hand.side]) * -WIND * (1.0 + GUSTS * math.sin(2.0 * math.pi * self._time / GUST_PERIOD))
-        self._gust += (1.0 - math.exp(-seconds / WIND_RISE)) * (blows - self._gust)
-        self.live.wind = tuple((self._wind + self._gust).tolist())
+        self.gust += (1.0 - math.exp(-seconds / WIND_RISE)) * (blows - self.gust)
+        self.live.wind = tuple((self._wind + self.gust).tolist())
         self.live.head, self.live.trunk = self.head.transform, shifted(self.head.trunk)
         self._touch(hand.touch)
         return self.live.step()
+
+    def join(self, leader: Mover) -> None:
+        """Is at rest on the head of another one from now on, and follows it."""
+        self.head, live, other = leader.head, self.live, leader.live
+        live.dt, live.head, live.trunk = other.dt, other.head, other.trunk
+        live.reset()
+
+    def follow(self, leader: Mover, hand: Hand) -> None:
+        """Steps as another one has: with the same head, in the same gusts and under the same hand."""
+        self._use_found_contact()
+        self.live.wind = tuple((self._wind + leader.gust).tolist())
+        self.live.head, self.live.trunk = leader.live.head, leader.live.trunk
+        self._touch(hand.touch)
+        self.live.step()
 
     def _touch(self, touch: tuple[protocol.TouchHair, protocol.TouchHair] | None) -> None:
         """A hand that begins does so where it began, wherever it has gone since the last step."""
@@ -160,11 +179,11 @@ class Mover:
                 self.head.play(name, clip_motion(transforms, self.head.pivot, groom.space.fps))
 
 
-def rods_message(key: int, mover: Mover) -> bytes:
+def rods_message(key: int, mover: Mover, side: Side = "a") -> bytes:
     """Message with the rods of a groom as groomed."""
     live, origin = mover.live, mover.scene.groom.origin
     return pack(
-        protocol.Rods(key=key, pivot=tuple((mover.head.pivot - origin).tolist())),
+        protocol.Rods(side=side, key=key, pivot=tuple((mover.head.pivot - origin).tolist())),
         points=live.groomed_rods - origin,
         along=live.vertex_places,
         axis=live.axes,
@@ -172,7 +191,7 @@ def rods_message(key: int, mover: Mover) -> bytes:
     )
 
 
-def step_message(key: int, step: int, mover: Mover, note: str) -> bytes:
+def step_message(key: int, step: int, mover: Mover, note: str, side: Side = "a") -> bytes:
     """Message with the rods as they are now."""
     live, origin = mover.live, mover.scene.groom.origin
     worn = [body.worn for body in mover.scene.worn if body.worn is not None]
@@ -182,7 +201,7 @@ def step_message(key: int, step: int, mover: Mover, note: str) -> bytes:
         places = np.concatenate([accessory.at(rest, points) for accessory, rest in worn]) - origin
     head = relative(live.head, origin)[:3].ravel().tolist()
     return pack(
-        protocol.LiveStep(key=key, step=step, head=head, trunk=tuple(mover.head.trunk.tolist()), note=note),
+        protocol.LiveStep(side=side, key=key, step=step, head=head, trunk=tuple(mover.head.trunk.tolist()), note=note),
         points=live.rods - origin,
         worn=places,
     )

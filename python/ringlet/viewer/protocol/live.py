@@ -78,6 +78,7 @@ class Live(Message):
 class Rods(Message):
     """The rods that carry locks in live motion, as groomed.
 
+    side:  of their groom: ``a``, or another for one that is compared
     key:   changes with the groom
     pivot: about which the head turns on its neck [m]
 
@@ -86,6 +87,7 @@ class Rods(Message):
     """
 
     kind: Literal["rods"] = "rods"
+    side: Side = "a"
     key: int
     pivot: Point
     arrays: ClassVar[dict[str, str]] = {"points": "f4", "along": "f4", "axis": "f4", "carrier": "u4"}
@@ -94,6 +96,7 @@ class Rods(Message):
 class LiveStep(Message):
     """A step of live hair: where the vertices of its rods are.
 
+    side:  of the rods
     key:   of the rods
     step:  its number, also of those that were left out so that time goes on
     head:  rigid motion of the head since it was groomed, the rows of a 3 × 4 matrix
@@ -104,6 +107,7 @@ class LiveStep(Message):
     """
 
     kind: Literal["live_step"] = "live_step"
+    side: Side = "a"
     key: int
     step: int
     head: list[float]
