@@ -28,6 +28,7 @@ CORE = ("src",)
 GROOM = (*CORE, *(f"python/ringlet/{name}" for name in ("data", "deform", "groom", "io")))
 SIM = (*GROOM, "python/ringlet/sim")
 REST = (*SIM, "python/ringlet/rest")
+LIVE = (*REST, "python/ringlet/live")
 UNTIMED = {"iterations", "liveliness", "nest", "noise", "serial", "tips", "warp"}  # what counts is no time: no turns
 MEASURED = {  # folders, where not the core alone
     "groom": GROOM,
@@ -37,6 +38,8 @@ MEASURED = {  # folders, where not the core alone
     "hairs": GROOM,
     "noise": ("python/ringlet/picture", "python/ringlet/deform"),
     "rest": REST,
+    "live": LIVE,
+    "looks": LIVE,
     "adopt": (*GROOM, "python/ringlet/adoption"),
     "braids": SIM,
     "hair_intersections": SIM,
