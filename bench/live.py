@@ -55,7 +55,9 @@ def run(
             cache = simulate(shot.model_copy(update={"frames": (1, frames), "solver": solver}), groom)
         expected = of_heads(cache.points.astype(np.float64), heads)
         groom.locks.points[:] = expected[0]
-        measured["of_shot"] = compare(groom, expected, moved(live_shot(shot, groom), heads, trunks, clock))
+        found = moved(live_shot(shot, groom), heads, trunks, clock)
+        measured["of_shot"] = compare(groom, expected, found)
+        measured["tips_mm"] = dict(zip(("live", "shot"), along((found, expected), groom.locks.offsets), strict=True))
     else:
         moved(live_shot(shot, groom), heads, trunks, clock)
     measured["still"] = still(live_shot(shot, groom), seconds)
@@ -108,6 +110,13 @@ def compare(groom: Groom, expected: Array, found: Array) -> dict[str, float]:
         "stretch_percent": 100.0 * (longest(found, offsets) - 1.0),
         "stretch_of_shot_percent": 100.0 * (longest(expected, offsets) - 1.0),
     }
+
+
+def along(motions: tuple[Array, Array], offsets: NDArray[np.integer]) -> list[list[float]]:
+    """The median motion of tips from the first frame, along the line on which the second moves most [mm], by frame."""
+    tips = [np.median((points - points[:1])[:, offsets[1:] - 1], axis=1) for points in motions]
+    line = np.linalg.svd(tips[1])[2][0]
+    return [np.round(1e3 * of @ line, 2).tolist() for of in tips]
 
 
 def still(live: Live, seconds: float) -> dict[str, float]:
