@@ -1,4 +1,4 @@
-"""Benchmark of live hair: time of a step, and its motion against a converged shot in contact."""
+"""Benchmark of live hair: time of a step, and its motion against a converged shot in contact, also calibrated."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from ringlet import (
     Groom,
     Live,
     build_groom,
+    calibrate,
     head_motion,
     live_shot,
     read_recipe,
@@ -53,11 +54,17 @@ def run(
         solver = shot.solver.model_copy(update={"newton": newton})
         with clock("shot"):
             cache = simulate(shot.model_copy(update={"frames": (1, frames), "solver": solver}), groom)
+        with clock("calibrate"):
+            contact = calibrate(groom, shot.strands, clothes=live_shot(shot, groom).clothes, touching=shot.touching)
         expected = of_heads(cache.points.astype(np.float64), heads)
         groom.locks.points[:] = expected[0]
-        found = moved(live_shot(shot, groom), heads, trunks, clock)
-        measured["of_shot"] = compare(groom, expected, found)
-        measured["tips_mm"] = dict(zip(("live", "shot"), along((found, expected), groom.locks.offsets), strict=True))
+        motions = {"shot": expected}
+        for name, of in {"default": live_shot(shot, groom).contact, "calibrated": contact}.items():
+            live = live_shot(shot, groom)
+            live.contact = of
+            motions[name] = moved(live, heads, trunks, clock)
+            measured[name] = {"contact": of, **compare(groom, expected, motions[name])}
+        measured["tips_mm"] = along(motions, groom.locks.offsets)
     else:
         moved(live_shot(shot, groom), heads, trunks, clock)
     measured["still"] = still(live_shot(shot, groom), seconds)
@@ -112,11 +119,11 @@ def compare(groom: Groom, expected: Array, found: Array) -> dict[str, float]:
     }
 
 
-def along(motions: tuple[Array, Array], offsets: NDArray[np.integer]) -> list[list[float]]:
-    """The median motion of tips from the first frame, along the line on which the second moves most [mm], by frame."""
-    tips = [np.median((points - points[:1])[:, offsets[1:] - 1], axis=1) for points in motions]
-    line = np.linalg.svd(tips[1])[2][0]
-    return [np.round(1e3 * of @ line, 2).tolist() for of in tips]
+def along(motions: dict[str, Array], offsets: NDArray[np.integer]) -> dict[str, list[float]]:
+    """The median motion of tips from the first frame, along the line on which the shot's moves most [mm], by frame."""
+    tips = {name: np.median((of - of[:1])[:, offsets[1:] - 1], axis=1) for name, of in motions.items()}
+    line = np.linalg.svd(tips["shot"])[2][0]
+    return {name: np.round(1e3 * of @ line, 2).tolist() for name, of in tips.items()}
 
 
 def still(live: Live, seconds: float) -> dict[str, float]:
