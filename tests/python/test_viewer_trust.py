@@ -315,6 +315,23 @@ def test_a_shot_uses_the_copy_of_its_recipe_when_it_is_asked_to(folder: Path):
     assert 'groom = "wider.recipe.toml"' in (folder / "small.shot.toml").read_text()
 
 
+def test_a_shot_that_is_saved_with_its_recipe_under_other_names_names_the_copy(folder: Path):
+    before = {path: path.read_text() for path in (folder / "small.recipe.toml", folder / "small.shot.toml")}
+    with serving(folder, "small.shot.toml") as client, page(client) as one:
+        one.receive("numbers", draft=False)
+        edit(one, 1.5)
+        one.receive("numbers", draft=False)
+        one.send(kind="set", file="shot", changes=[[["name"], "slow"]], gesture=2, resting=True)
+        one.receive("document", file="shot", dirty=True)
+        one.send(kind="save", name="wide")
+        one.send(kind="save", file="shot", name="slow", with_copy=True)
+        assert one.receive("welcome", name="slow.shot.toml")["mode"] == "shot"
+        assert one.receive("document", name="wide.recipe.toml")["said"]["curl"]["width"] == 1.5
+    slow = (folder / "slow.shot.toml").read_text()
+    assert 'groom = "wide.recipe.toml"' in slow and 'name = "slow"' in slow
+    assert before == {path: path.read_text() for path in before}
+
+
 def test_another_file_is_opened_and_unsaved_changes_keep_it_out(folder: Path):
     other = folder / "other.recipe.toml"
     other.write_text((folder / "small.recipe.toml").read_text().replace("count = 8", "count = 9"))

@@ -1,5 +1,6 @@
 // The page: connects what the server says with the picture and the panels.
 
+import type { Client } from "./client";
 import { h } from "./dom";
 import { Link, type LinkState } from "./link";
 import { Model } from "./model";
@@ -53,10 +54,10 @@ export class App {
   private readonly unsaved = new Unsaved(this.model);
   private session = "";
 
-  constructor(root: HTMLElement) {
+  constructor(root: HTMLElement, client: Client) {
     const { model } = this;
     const picture = h("main", { class: "picture" });
-    const people = new People(model, () => this.look);
+    const people = new People(model, () => this.look, this.notices);
     this.problems = new ProblemBar(model, people.questions);
     root.append(picture);
     const viewer = (this.viewer = new Viewer(picture));
@@ -119,7 +120,7 @@ export class App {
     });
     const preferred = matchMedia("(prefers-color-scheme: light)").matches ? "light" : "dark";
     this.setTheme((localStorage.getItem("ringlet-theme") as "dark" | "light" | null) ?? preferred);
-    this.connect();
+    this.connect(client);
   }
 
   /** What is open, without the ends of its file name. */
@@ -127,12 +128,12 @@ export class App {
     return (this.model.welcome?.name ?? "ringlet").split(".")[0];
   }
 
-  private connect(): void {
+  private connect(client: Client): void {
     const { model } = this;
     model.hear("welcome", (message) => this.welcome(message));
     model.hear("share_page", (message) => this.sharePage(message));
     const leads = () => model.welcome !== null && model.role.leads;
-    model.link = new Link((message) => model.take(message), (state, why) => this.connected(state, why), leads, ownName);
+    model.link = new Link(client, (message) => model.take(message), (state, why) => this.connected(state, why), leads, ownName);
     addEventListener("beforeunload", (event) => {
       (document.activeElement as HTMLElement | null)?.blur(); // what is typed counts
       if (document.documentElement.dataset["link"] !== "open" && model.link?.unanswered) event.preventDefault();

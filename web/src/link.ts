@@ -1,6 +1,7 @@
 // The connection to the server. It comes back on its own when it is lost.
 
 import { tokenOf } from "./address";
+import type { Client } from "./client";
 import { decode, encode } from "./codec";
 import { type FromPage, type FromServer, VERSION } from "./protocol";
 
@@ -33,13 +34,14 @@ export class Link {
   private again: FromPage[] = [];
 
   constructor(
+    private readonly client: Client,
     private readonly hear: (message: FromServer) => void,
     private readonly changed: (state: LinkState, why: string) => void,
     /** Whether this page holds the edit lock. */
     private readonly leads: () => boolean,
     private readonly person: () => string,
   ) {
-    const stored = sessionStorage.getItem(STORE);
+    const stored = client.copied ? null : sessionStorage.getItem(STORE); // the tab that this one is a copy of sends it
     if (stored) {
       sessionStorage.removeItem(STORE);
       const { heard, owed, led } = JSON.parse(stored) as Stored;
@@ -75,7 +77,7 @@ export class Link {
     socket.onopen = () => {
       this.socket = socket;
       this.wait = FIRST_WAIT;
-      this.send({ kind: "hello", version: VERSION, client: clientName(), leads: this.led || this.leads(), person: this.person() });
+      this.send({ kind: "hello", version: VERSION, client: this.client.name, leads: this.led || this.leads(), person: this.person() });
       this.led = false;
       this.changed("open", "");
     };
@@ -136,13 +138,4 @@ interface Stored {
   heard: number;
   owed: FromPage[];
   led: boolean;
-}
-
-/** A name of this tab that it keeps when it is loaded again. */
-function clientName(): string {
-  const known = sessionStorage.getItem("ringlet-client");
-  if (known) return known;
-  const name = crypto.getRandomValues(new Uint32Array(3)).join("-");
-  sessionStorage.setItem("ringlet-client", name);
-  return name;
 }

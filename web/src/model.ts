@@ -98,7 +98,7 @@ export class Model {
   /** What there is in the project to compare with. */
   files: string[] = [];
   /** The stage whose settings are shown, and the file that it belongs to. */
-  chosen: { file: File; place: Place } = { file: "recipe", place: ["curl"] };
+  chosen: { file: File; place: Place } = { file: "recipe", place: [] };
   /** The locks whose own values are edited, in place of those of all locks; empty: all. */
   locks: number[] = [];
   problems: Problem[] = [];
@@ -215,7 +215,7 @@ export class Model {
     this.locks = [];
     this.followed = null;
     this.live = NOT_LIVE;
-    this.chosen = { file: "recipe", place: ["curl"] };
+    this.chosen = { file: "recipe", place: [] };
   }
 
   /** Hair no longer moves live. */

@@ -234,6 +234,7 @@ export interface Save {
   name?: string;
   variant?: boolean;
   anyway?: boolean;
+  with_copy?: boolean;
 }
 
 /** Opens another recipe, shot or USD file of the project in the session. */

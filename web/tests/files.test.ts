@@ -54,10 +54,32 @@ test("another file is opened after unsaved changes are saved", async () => {
   control("Save as…").click();
   fill(find("#save-name"), "third");
   find<HTMLFormElement>("form", dialog()).requestSubmit();
-  expect(page.last("save")).toEqual({ kind: "save", file: "recipe", name: "third", variant: false });
+  expect(page.last("save")).toEqual({ kind: "save", file: "recipe", name: "third", variant: false, with_copy: false });
   page.hear({ ...page.model.welcome!, name: "third.recipe.toml" });
   page.hear({ ...page.first("document"), name: "third.recipe.toml" });
   expect(find(".file-name").textContent).toBe("third.recipe.toml");
+});
+
+test("the bar names the files that are written, and each of them gets a name of its own", async () => {
+  const page = await open("small.shot");
+  const saveAs = (...names: string[]) => {
+    control("Save as…").click();
+    names.forEach((name, k) => fill(find(`#save-name${k || ""}`), name));
+    expect(dialog().querySelectorAll("input[name]").length).toBe(names.length);
+    find<HTMLFormElement>("form", dialog()).requestSubmit();
+  };
+  page.document({ file: "shot" });
+  expect(find(".file-name").textContent).toBe("small.shot.toml ·");
+  expect(control("Save").title).toBe("Save small.shot.toml (Ctrl+S)");
+  saveAs("slow");
+  expect(page.said("save")).toEqual([{ kind: "save", file: "shot", name: "slow", variant: false, with_copy: false }]);
+  page.document({ file: "recipe" });
+  expect(find(".file-name").textContent).toBe("small.recipe.toml, small.shot.toml ·");
+  saveAs("wide", "slow");
+  expect(page.said("save").slice(1)).toEqual([
+    { kind: "save", file: "recipe", name: "wide", variant: false, with_copy: false },
+    { kind: "save", file: "shot", name: "slow", variant: false, with_copy: true },
+  ]);
 });
 
 test("a conflict is merged setting by setting", async () => {

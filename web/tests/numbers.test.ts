@@ -1,12 +1,13 @@
 // Numbers of settings: typed, scrubbed by their labels, dragged by their sliders, and their units.
 
 import { expect, test, vi } from "vitest";
-import { control, drag, enter, find, number, press, slide, slider } from "./controls";
+import { drag, enter, find, number, press, slide, slider } from "./controls";
 import { open } from "./page";
 
 // Typed in a field in cm whose value is 1.0, what the file is to say then; null is refused.
 const TYPED: [string, string | number | null][] = [
-  ["1.5 mm", "1.5 mm"],
+  ["1.5 mm", 0.15],
+  ["mm", "10 mm"],
   ["1,5", 1.5],
   ["*1.1", 1.1],
   ["+10%", 1.1],
@@ -87,31 +88,52 @@ test("numbers of a shot have units", async () => {
   expect(page.model.words("curl.width is 0.3 m; must be at most 0.2 m")).toBe("curl.width is 30 cm; must be at most 20 cm");
 });
 
-test("shorter, tighter and parted on the left takes five clicks and three drags", async () => {
+test("shorter, tighter, parted on the left and redder are four drags on the first panel", async () => {
   const page = await open();
-  const done = { clicks: 0, drags: 0 };
-  const click = (part: HTMLElement) => {
-    part.click();
-    done.clicks++;
-  };
-  /** Drags a knob by a part of its slider; returns the value that the page says then. */
-  const move = (setting: string, by: number): number => {
-    const knob = slider(setting);
-    slide(knob, Number(knob.value) + by * (Number(knob.max) - Number(knob.min)));
-    done.drags++;
+  for (const [setting, by] of [["guides.length", -0.1], ["curl.width", -0.1], ["guides.part_line.offset", 0.02], ["color.redness", 0.1]] as const) {
+    const knob = slider(setting); // the character's left is at +X
+    const before = Number(knob.value);
+    slide(knob, before + by * (Number(knob.max) - Number(knob.min)));
     const [place, value] = page.last("set").changes[0];
     expect(place.join(".")).toBe(setting);
-    return value as number;
+    expect(Math.sign((value as number) - before)).toBe(Math.sign(by));
+  }
+});
+
+test("a slider is dragged from where its value is, ten times finer with Shift, and a click goes to its place", async () => {
+  const page = await open();
+  const knob = slider("curl.width");
+  vi.spyOn(knob, "clientWidth", "get").mockReturnValue(62);
+  vi.spyOn(knob, "getBoundingClientRect").mockReturnValue(new DOMRect(10, 0, 62, 18));
+  const whole = Number(knob.max) - Number(knob.min);
+  const moved = (to: [number, number][], more = {}) => {
+    page.setting(["curl", "width"], 1, 0.01);
+    drag(knob, [60, 5], to, more);
+    const { changes, resting } = page.last("set");
+    expect(resting).toBe(true);
+    return (changes[0][1] as number) - 1;
   };
-  click(find('[data-stage="guides"]'));
-  const length = Number(slider("guides.length").value);
-  expect(move("guides.length", -0.1)).toBeLessThan(length);
-  click(control("All settings"));
-  click(find('[data-setting="guides.part_line"] > .field-head > .unfold'));
-  click(find('[data-setting="guides.part_line"] summary'));
-  expect(move("guides.part_line.offset", 0.02)).toBeGreaterThan(0); // the character's left is at +X
-  click(find('[data-stage="curl"]'));
-  const width = Number(slider("curl.width").value);
-  expect(move("curl.width", -0.1)).toBeLessThan(width);
-  expect(done).toEqual({ clicks: 5, drags: 3 }); // docs/review_settings.md says so
+  expect(moved([[80, 5], [90, 5]])).toBeCloseTo((30 / 300) * whole, 2); // not a jump to the pointer
+  expect(moved([[80, 5], [90, 5]], { shiftKey: true })).toBeCloseTo((3 / 300) * whole, 3);
+  expect(moved([[60, 5]])).toBeCloseTo((50 / 62) * whole - 1, 1);
+});
+
+test("a number is shown without powers of ten up to a milliard", async () => {
+  const page = await open();
+  page.setting(["hairs", "per_lock"], 1_000_000);
+  expect(number("hairs.per_lock").value).toBe("1000000");
+});
+
+test("a unit that is typed alone stays, and one after a number does not", async () => {
+  const page = await open();
+  const unit = () => find('[data-setting="curl.width"] .unit').textContent;
+  enter(number("curl.width"), "mm");
+  expect(page.last("set").changes).toEqual([[["curl", "width"], "10 mm"]]);
+  page.setting(["curl", "width"], "10 mm", 0.01);
+  expect([number("curl.width").value, unit()]).toEqual(["10", "mm"]);
+  enter(number("curl.width"), "2 cm");
+  expect(page.last("set").changes).toEqual([[["curl", "width"], "20 mm"]]);
+  page.setting(["curl", "width"], "20 mm", 0.02);
+  enter(number("curl.width"), "cm");
+  expect(page.last("set").changes).toEqual([[["curl", "width"], 2]]);
 });

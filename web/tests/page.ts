@@ -114,8 +114,8 @@ function changed(table: Record<string, Json>, place: Place, value: Json | undefi
 /** Listeners of the window, which outlive a page. */
 let listening: (() => void)[] = [];
 
-/** Opens a file of the small example in a page of its own. change: of what the server says */
-export async function open(example: Example = "small.recipe", change = (message: FromServer) => message): Promise<Page> {
+/** Opens a file of the small example in a page of its own. change: of what the server says; copied: in a copy of a tab */
+export async function open(example: Example = "small.recipe", change = (message: FromServer) => message, copied = false): Promise<Page> {
   leave();
   vi.resetModules();
   vi.stubGlobal("WebSocket", Socket);
@@ -130,7 +130,7 @@ export async function open(example: Example = "small.recipe", change = (message:
   document.body.append(root);
   const { App } = await import("../src/app");
   vi.useFakeTimers();
-  const app = new App(root);
+  const app = new App(root, { name: "tab", copied });
   Socket.latest.open();
   for (const message of recorded(example)) app.model.take(change(decode(message)));
   vi.advanceTimersByTime(SETTLED);

@@ -72,6 +72,21 @@ test("who asks to edit is named, and gets an answer", async () => {
   expect(page.last("hand")).toEqual({ kind: "hand", over: true });
 });
 
+test("who leaves while they edit leaves the edit lock to the others, who are told", async () => {
+  const page = await open();
+  two(page, false, "Bo");
+  page.role({ leads: false, people: [person("Guest 2", { you: true })] }); // loads the page again
+  vi.advanceTimersByTime(1000);
+  two(page, false, "Bo");
+  vi.advanceTimersByTime(5000);
+  expect(texts(".notice")).toEqual([]);
+  page.role({ leads: false, people: [person("Guest 2", { you: true })] });
+  vi.advanceTimersByTime(3000);
+  expect(texts(".notice")).toEqual(["Bo has left; whoever presses ‘Edit’ first goes on"]);
+  control("Edit").click();
+  expect(page.last("lead")).toEqual({ kind: "lead" });
+});
+
 test("a follower sees what the leader sees, until it looks elsewhere", async () => {
   const page = await open();
   two(page, false);

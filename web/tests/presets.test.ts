@@ -29,6 +29,7 @@ test("a preset is shown while the pointer rests on it, and taken by a click", as
   expect(page.last("take")).toEqual({ kind: "take", name: "wide.preset.toml", part: 0.5, gesture, resting: true }); // one step of undo
   vi.spyOn(page.app.viewer, "drawAt").mockReturnValue(document.createElement("canvas"));
   vi.spyOn(HTMLCanvasElement.prototype, "toDataURL").mockReturnValue("data:image/jpeg;base64,BBBB");
+  page.model.choose("recipe", ["curl"]);
   control("Keep a preset").click();
   fill(find("#preset-name"), "mine");
   find<HTMLFormElement>("form", dialog()).requestSubmit();

@@ -2,7 +2,7 @@
 
 import { expect, test, vi } from "vitest";
 import type { Json } from "../src/protocol";
-import { choose, control, dialog, drag, fill, find, press, texts } from "./controls";
+import { choose, control, dialog, drag, enter, fill, find, number, press, texts } from "./controls";
 import { open, type Page } from "./page";
 
 const fields = () => [...document.querySelectorAll<HTMLElement>(".settings > .fields > .field")];
@@ -10,6 +10,7 @@ const shown = () => fields().filter((one) => !one.hidden).map((one) => one.datas
 
 test("five settings of an operator are at first sight, and those that the file says", async () => {
   const page = await open();
+  page.model.choose("recipe", ["curl"]);
   expect(shown().length).toBe(5);
   const said = fields().slice(-9).map((one) => one.dataset["setting"]!.split(".")[1]);
   page.hear({ ...page.first("document"), said: { curl: Object.fromEntries(said.map((name): [string, Json] => [name, {}])) } });
@@ -45,8 +46,62 @@ test("a search finds settings of all stages and shows the one that is chosen", a
   expect(shown().length).toBeGreaterThan(4);
 });
 
-test("a pinned setting is at first sight of its stage, also when the page is loaded again", async () => {
+// What stylists type, and the setting that is found first.
+const WORDS: [string, string, string][] = [
+  ["tighter", "curl.width", "less"],
+  ["parting", "guides.part_line", ""],
+  ["parted on the left", "guides.part_line", "more"],
+  ["redder", "color.redness", "more"],
+  ["more volume", "guides.lift", "more"],
+  ["bounce", "motion.bounce", ""],
+  ["fringe", "guides.zone", ""],
+  ["bangs", "guides.zone", ""],
+  ["dense", "hairs.per_lock", "more"],
+  ["messy", "hairs.frizz", "more"],
+  ["curlier", "curl.width", "less"],
+  ["shorter", "guides.length", "less"],
+  ["blond", "color.melanin", "less"],
+  ["frizz", "hairs.frizz", ""],
+];
+
+test.each(["guides", "curl", "hairs"])("words that stylists type find the setting that they mean, in %s", async (stage) => {
+  const page = await open("small.shot");
+  const search = find<HTMLInputElement>(".search");
+  for (const [typed, setting, way] of WORDS) {
+    page.model.choose("recipe", [stage]);
+    fill(search, typed);
+    const about = find(".search-results [role=option] .found-about").textContent!;
+    expect(about.includes("drag to the"), `${typed}: ${about}`).toBe(way !== "");
+    if (way) expect(about, typed).toContain(way);
+    press("Enter", {}, search);
+    const focused = document.activeElement!.closest<HTMLElement>(".field")!.dataset["setting"]!;
+    expect(focused === setting || focused.startsWith(`${setting}.`), `${typed}: ${focused}`).toBe(true);
+  }
+});
+
+test("what only a shot has is said to be there", async () => {
   await open();
+  fill(find<HTMLInputElement>(".search"), "bounce");
+  expect(find(".search-results").textContent).toContain("bounce: in a shot; open one (Ctrl+O)");
+});
+
+test("the page begins with the few settings that most meetings need, by their names among stylists", async () => {
+  let page = await open();
+  expect(find(".settings h2").textContent).toBe("essentials");
+  const all = ["guides.length", "curl.width", "curl.pitch", "guides.part_line.offset", "guides.lift", "hairs.per_lock", "hairs.frizz", "color.melanin", "color.redness"];
+  expect(shown()).toEqual(all);
+  expect(texts(".fields > .field:not([hidden]) > .field-head > label")).toEqual(["length", "size of curls", "tightness of turns", "parting", "volume", "hairs", "frizz", "darkness", "redness"]);
+  enter(number("guides.length"), "20");
+  expect(page.last("set")).toMatchObject({ changes: [[["guides", "length"], 20]] });
+  control("All settings").click();
+  expect(shown()).toContain("seed");
+  page = await open("small.shot");
+  find('[data-stage="recipe"]').click();
+  expect(shown()).toEqual([...all, "motion.bounce"]);
+});
+
+test("a pinned setting is at first sight of its stage, also when the page is loaded again", async () => {
+  (await open()).model.choose("recipe", ["curl"]);
   expect(shown()).not.toContain("curl.flatness");
   control("All settings").click();
   expect(shown()).toContain("curl.flatness");
@@ -54,7 +109,7 @@ test("a pinned setting is at first sight of its stage, also when the page is loa
   control("Fewer settings").click();
   expect(shown()).toContain("curl.flatness");
   expect(shown()).not.toContain("curl.attract");
-  await open();
+  (await open()).model.choose("recipe", ["curl"]);
   expect(shown()).toContain("curl.flatness");
   control("Unpin flatness").click();
   expect(shown()).not.toContain("curl.flatness");

@@ -2,7 +2,7 @@
 
 import "./bar.css";
 import { h, iconButton } from "../dom";
-import type { File, Model } from "../model";
+import type { Model } from "../model";
 import { choices, compareWith } from "./compare";
 import { openFile, saveAs, showChanges } from "./files";
 import { bindKey, command, showKeys } from "./keys";
@@ -29,7 +29,7 @@ export class Bar {
   ) {
     this.name.addEventListener("click", () => showChanges(model));
     this.save.addEventListener("click", () => this.saveAll());
-    this.as.addEventListener("click", () => saveAs(model, this.file));
+    this.as.addEventListener("click", () => saveAs(model));
     this.other.addEventListener("change", () => this.compare());
     this.element.append(
       h("span", { class: "brand" }, "Ringlet"),
@@ -53,10 +53,6 @@ export class Bar {
     bindKey({ section: "File", keys: "Ctrl+O", does: "open another file", on: command("o"), run: () => openFile(model), anywhere: true });
   }
 
-  private get file(): File {
-    return this.model.documents.recipe ? "recipe" : "shot";
-  }
-
   saveAll(): void {
     (document.activeElement as HTMLElement | null)?.blur(); // what is typed counts
     for (const file of ["recipe", "shot"] as const)
@@ -72,9 +68,11 @@ export class Bar {
 
   private update(): void {
     const { documents, role, welcome } = this.model;
-    const open = Object.values(documents);
+    const open = [documents.recipe, documents.shot].filter((document) => document !== undefined);
     const dirty = open.some((document) => document.dirty);
-    this.name.textContent = `${documents.recipe?.name ?? welcome?.name ?? ""}${dirty ? " ·" : ""}`;
+    const changed = open.filter((document) => document.dirty).map(({ name }) => name);
+    this.name.textContent = dirty ? `${changed.join(", ")} ·` : (documents.recipe?.name ?? welcome?.name ?? "");
+    this.save.title = dirty ? `Save ${changed.join(" and ")} (Ctrl+S)` : "Save (Ctrl+S)";
     this.name.classList.toggle("dirty", dirty);
     document.title = `${dirty ? "• " : ""}${documents.recipe?.name ?? welcome?.name ?? "Ringlet"}`;
     this.undo.toggleAttribute("disabled", !role.leads || !open.some((document) => document.undo));

@@ -72,22 +72,30 @@ function askUnsaved(model: Model, name: string, open: (name: string, discard: bo
   );
 }
 
-export function saveAs(model: Model, file: File): void {
-  const name = h("input", {
-    type: "text",
-    id: "save-name",
-    required: true,
-    placeholder: "hair-down",
-    autocomplete: "off",
-  });
+/** Files that a copy is for: those that have changed; the first one where none has. */
+function toCopy(model: Model): File[] {
+  const open = (["recipe", "shot"] as const).filter((file) => model.documents[file]);
+  const changed = open.filter((file) => model.documents[file]!.dirty);
+  return changed.length ? changed : open.slice(0, 1);
+}
+
+/** Saves the files that have changed under other names; a shot then names the copy of its recipe. */
+export function saveAs(model: Model): void {
+  const files = toCopy(model);
+  const names = files.map((file, k) =>
+    h("input", { type: "text", id: `save-name${k || ""}`, name: file, required: true, placeholder: "hair-down", autocomplete: "off" }),
+  );
   const variant = h("input", { type: "checkbox", id: "save-variant", class: "switch", role: "switch" });
+  const folder = files.map((file) => model.documents[file]!.name).join(" and ");
   const form = h(
     "form",
     { class: "save-form" },
-    h("p", {}, `A new file in the folder of ${model.documents[file]?.name ?? "the file"}; the review continues with it.`),
-    h("label", { for: "save-name" }, "Name"),
-    name,
-    file === "recipe"
+    h("p", {}, `${files.length > 1 ? "New files" : "A new file"} in the folder of ${folder}; the review continues with ${files.length > 1 ? "them" : "it"}.`),
+    ...files.flatMap((file, k) => [
+      h("label", { for: names[k].id }, files.length > 1 ? `Name of the ${file}` : `Name of the ${file}, a copy of ${model.documents[file]!.name}`),
+      names[k],
+    ]),
+    files.includes("recipe")
       ? h(
           "div",
           { class: "field-head" },
@@ -100,8 +108,16 @@ export function saveAs(model: Model, file: File): void {
   const dialog = openDialog("Save as", form);
   form.addEventListener("submit", (event) => {
     event.preventDefault();
-    model.say({ kind: "save", file, name: name.value.trim(), variant: variant.checked });
+    files.forEach((file, k) =>
+      model.say({
+        kind: "save",
+        file,
+        name: names[k].value.trim(),
+        variant: file === "recipe" && variant.checked,
+        with_copy: file === "shot" && files.length > 1,
+      }),
+    );
     dialog.close();
   });
-  name.focus();
+  names[0].focus();
 }

@@ -145,8 +145,8 @@ export class NumberInput {
   }
 }
 
-/** A number as it is shown: seven digits, and powers of ten where it is long. */
+/** A number as it is shown: seven digits, and powers of ten where it would be longer than its field. */
 export function shown(x: number): string {
   const tidy = Number(x.toPrecision(7));
-  return Math.abs(tidy) < 1e6 && (tidy === 0 || Math.abs(tidy) >= 1e-6) ? String(tidy) : tidy.toExponential();
+  return Math.abs(tidy) < 1e9 && (tidy === 0 || Math.abs(tidy) >= 1e-6) ? String(tidy) : tidy.toExponential();
 }

@@ -24,7 +24,7 @@ export class NumberField extends Field {
   constructor(model: Model, file: File, place: Place, setting: Setting, inner: MakeInner) {
     super(model, file, place, setting);
     this.slider = new Slider({ "aria-label": setting.label, title: setting.description }, (value, resting) =>
-      this.give({ value: rounded(value, this.range.step), unit: "" }, resting),
+      this.give({ value: rounded(value, this.range.step / 10), unit: "" }, resting),
     );
     this.number = new NumberInput({
       label: setting.label,

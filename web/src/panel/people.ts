@@ -7,8 +7,10 @@ import type { Person } from "../protocol";
 import { NAME, ownName } from "./author";
 import { bindKey, plainKey } from "./keys";
 import type { Look } from "./look";
+import type { Notices } from "./status";
 
 const MOST_SEEN = 4; // people in the bar; the list has all
+const RETURN = 3000; // after which a page that was there is not only loaded again [ms]
 
 /** The color of a person, for CSS. */
 export const colorOf = (person: Person): string => `oklch(0.5 0.13 ${(40 + 137.5 * person.hue) % 360})`;
@@ -29,10 +31,13 @@ export class People {
   private readonly asking = h("p", {});
   private readonly request = this.editQuestion();
   private declined = false;
+  private led = ""; // name of the person that led last
+  private gone = 0; // timer
 
   constructor(
     private readonly model: Model,
     private readonly look: () => Look,
+    private readonly notices: Notices,
   ) {
     this.sheet.append(
       h("h2", {}, "Who is here"),
@@ -127,7 +132,14 @@ export class People {
     this.follow.textContent = follows ? "Stop following" : `Follow ${leader?.name ?? ""}`;
     this.lead.hidden = role.leads;
     this.lead.disabled = role.asks;
-    this.lead.textContent = role.asks ? "Asked to edit …" : "Ask to edit";
+    this.lead.textContent = role.asks ? "Asked to edit …" : leader ? "Ask to edit" : "Edit";
+    if (leader) this.led = leader.name;
+    clearTimeout(this.gone);
+    const left = () => {
+      this.notices.show(`${this.led} has left; whoever presses ‘Edit’ first goes on`);
+      this.led = "";
+    };
+    if (this.led && !leader) this.gone = window.setTimeout(left, RETURN);
     const page = document.documentElement;
     page.toggleAttribute("data-follows", !role.leads && follows && leader !== undefined);
     if (leader) page.style.setProperty("--presenter", colorOf(leader));

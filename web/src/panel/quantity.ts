@@ -13,7 +13,7 @@ export interface Kind {
   part: boolean;
 }
 
-/** A number in the unit that is shown; `unit` is the one that was typed, if one was. */
+/** A number in the unit that is shown; `unit` is the one that the setting is to have, if one was typed alone. */
 export interface Typed {
   value: number;
   unit: string;
@@ -21,8 +21,13 @@ export interface Typed {
 
 export class Refusal extends Error {}
 
-/** Reads what was typed: `1.5 mm`, `1,5`, `2*(3+1) cm`, and of the value that is there `*1.1`, `/2`, `+10%`. */
+/**
+ * Reads what was typed: `1.5 mm`, `1,5`, `2*(3+1) cm`, of the value that is there `*1.1`, `/2`, `+10%`, and a unit alone, in
+ * which the setting is from then on. A unit after a number is that of the number alone.
+ */
 export function parseQuantity(text: string, kind: Kind, current: number | null): Typed {
+  const alone = text.trim();
+  if (current !== null && alone in METRES && kind.unit in METRES) return { value: current, unit: alone };
   const reader = new Reader(text, kind);
   const relative = reader.take(/^([*/])/) ?? (/^\s*[-+]\s*[\d.,]+\s*%\s*$/.test(text) ? "%" : null);
   let typed: Term;
@@ -41,7 +46,7 @@ export function parseQuantity(text: string, kind: Kind, current: number | null):
     if (relative) return { value: Math.round(value), unit: "" };
     throw new Refusal(`${value} is not a whole number`);
   }
-  return { value, unit: typed.unit };
+  return { value, unit: "" };
 }
 
 /** A number in the unit that is shown, and the unit that was typed; a plain number has none. */

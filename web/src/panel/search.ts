@@ -1,13 +1,16 @@
-// Finds settings of all stages by label, file name and description, and jumps to the one that is chosen.
+// Finds settings of all stages by what stylists call them, by label, file name and description, and jumps to the one that
+// is chosen.
 
 import "./search.css";
 import { h } from "../dom";
 import { at, type File, type Model, type Place } from "../model";
 import type { Json } from "../protocol";
+import { meantBy } from "./aspects";
 import { bindKey, plainKey } from "./keys";
 import { Schemas, type Setting } from "./schema";
 
 const MOST = 40; // results that are listed
+const MEANT = -1; // rank of what stylists mean: a hair setting is called `shorter`, but who types that means the length
 const SHOT_TABLES = ["strands", "motion", "variation", "solver", "forces", "contact"];
 
 /** A setting of a stage; `inner` is one in its table. */
@@ -17,6 +20,8 @@ interface Found {
   stage: string;
   setting: Setting;
   inner: Setting | null;
+  /** What stylists call it, and what is to be done with it. */
+  asked: string;
   rank: number;
 }
 
@@ -64,9 +69,12 @@ export class SettingSearch {
 
   private look(): void {
     const words = this.input.value.toLowerCase().split(/\s+/).filter(Boolean);
-    this.found = words.length ? this.all(words).sort((a, b) => a.rank - b.rank).slice(0, MOST) : [];
+    const { meant, missing } = words.length ? this.meant() : { meant: [], missing: "" };
+    const known = new Set(meant.map(keyOf));
+    const others = words.length ? this.all(words).filter((one) => !known.has(keyOf(one))) : [];
+    this.found = [...meant, ...others].sort((a, b) => a.rank - b.rank).slice(0, MOST);
     this.active = 0;
-    const none = h("li", { class: "hint" }, "No setting matches.");
+    const none = h("li", { class: "hint" }, missing || "No setting matches.");
     const rows = this.found.map((one, k) => {
       const label = one.inner ? `${one.setting.label} › ${one.inner.label}` : one.setting.label;
       const about = (one.inner ?? one.setting).description;
@@ -75,10 +83,10 @@ export class SettingSearch {
         { role: "option", id: `found-${k}`, title: about, onclick: () => this.go(k) },
         h("span", { class: "found-name" }, label),
         h("span", { class: "found-stage" }, one.stage),
-        h("span", { class: "found-about" }, about),
+        h("span", { class: "found-about" }, one.asked || about),
       );
     });
-    this.results.replaceChildren(...(rows.length ? rows : [none]));
+    this.results.replaceChildren(...rows, ...(rows.length && !missing ? [] : [none]));
     this.results.toggleAttribute("hidden", !this.on);
     this.input.setAttribute("aria-expanded", String(this.on));
     this.mark();
@@ -116,6 +124,19 @@ export class SettingSearch {
     this.reveal(one.setting.name);
   }
 
+  /** Settings that stylists mean by what was typed, and where those are that no open file has. */
+  private meant(): { meant: Found[]; missing: string } {
+    const { meant, missing } = meantBy(this.model, this.input.value);
+    const stages = new Map(this.stages().map(({ file, place, stage }) => [JSON.stringify([file, place]), stage]));
+    return {
+      meant: meant.map(({ file, stage: place, setting, inner, aspect, advice }) => {
+        const stage = stages.get(JSON.stringify([file, place])) ?? "";
+        return { file, place, stage, setting, inner, asked: [aspect.label, advice].filter(Boolean).join("; "), rank: MEANT };
+      }),
+      missing: missing.length ? `${missing.map(({ label }) => label).join(", ")}: in a shot; open one (Ctrl+O)` : "",
+    };
+  }
+
   /** Settings with all words in their names or descriptions; the names count before the descriptions. */
   private all(words: string[]): Found[] {
     const found: Found[] = [];
@@ -125,7 +146,7 @@ export class SettingSearch {
         const inner = setting.varied ? [] : setting.inner;
         for (const one of [null, ...inner]) {
           const rank = rankOf(one ?? setting, words, stage);
-          if (rank !== null) found.push({ file, place, stage, setting, inner: one, rank: rank + (one ? 0.5 : 0) });
+          if (rank !== null) found.push({ file, place, stage, setting, inner: one, asked: "", rank: rank + (one ? 0.5 : 0) });
         }
       }
     }
@@ -137,7 +158,7 @@ export class SettingSearch {
     const { documents, chosen } = this.model;
     const all: { file: File; place: Place; stage: string }[] = [];
     if (documents.recipe) {
-      all.push({ file: "recipe", place: [], stage: "recipe" });
+      all.push({ file: "recipe", place: [], stage: "essentials" });
       for (const { name, place } of documents.recipe.stages) all.push({ file: "recipe", place, stage: name.replaceAll("_", " ") });
     }
     const shot = documents.shot?.values;
@@ -152,7 +173,9 @@ export class SettingSearch {
   }
 }
 
-/** How well a setting fits: 0 its name, 1 the beginning of it, 2 a part of it, 3 its stage, 4 its description. */
+const keyOf = ({ file, place, setting, inner }: Found): string => JSON.stringify([file, place, setting.name, inner?.name]);
+
+/** How well a setting fits, less is better: 0 its name, 1 the beginning of it, 2 a part of it, 3 its stage, 4 its description. */
 function rankOf(setting: Setting, words: string[], stage: string): number | null {
   const [label, name, about] = [setting.label, setting.name, setting.description].map((text) => text.toLowerCase());
   const all = words.join(" ");

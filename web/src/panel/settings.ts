@@ -1,12 +1,14 @@
 // The settings of the stage that is chosen: what its file says, the most used and the pinned ones; the others on demand.
+// The first stage has the few of all stages that most meetings need.
 
 import "./settings.css";
 import { h } from "../dom";
-import type { Model } from "../model";
+import type { File, Model, Place } from "../model";
+import { fewSettings } from "./aspects";
 import type { Field } from "./field";
 import { makeField } from "./make_field";
 import { FieldTools, isPinned, pin } from "./pins";
-import { Schemas } from "./schema";
+import { Schemas, type Setting } from "./schema";
 import { SettingSearch } from "./search";
 
 const FEW = 5; // settings that are shown of a stage in any case; its schema begins with the most used
@@ -17,7 +19,9 @@ export class Settings {
   private readonly more = h("button", { type: "button", class: "quiet more" });
   private readonly search: SettingSearch;
   private fields: Field[] = [];
+  private few = FEW; // of the fields, those that are shown in any case
   private readonly tools = new Map<Field, FieldTools>();
+  private readonly kinds = new Map<Field, string>(); // their tables and operators
   private built = "";
   /** Stages whose settings are all shown. */
   private readonly opened = new Set<string>();
@@ -36,15 +40,36 @@ export class Settings {
     });
   }
 
+  /** Whether the few settings of all stages are shown. */
+  private get first(): boolean {
+    const { file, place } = this.model.chosen;
+    return file === "recipe" && !place.length;
+  }
+
   private get stage(): string {
     const { file, place } = this.model.chosen;
     return `${file}:${place.join("/")}`;
   }
 
-  /** The operator or the table, by its name in the file. */
-  private get kind(): string {
-    const { file, place } = this.model.chosen;
-    return String(this.model.value(file, [...place, "op"]) ?? (place[0] || file));
+  /** The operator or the table of a setting, by its name in the file. */
+  private kindOf(file: File, place: Place): string {
+    const table = place.slice(0, -1);
+    return String(this.model.value(file, [...table, "op"]) ?? (table[0] || file));
+  }
+
+  /** The settings to show, and how many of them in any case. */
+  private listed(): { all: { file: File; place: Place; setting: Setting }[]; few: number } {
+    const { welcome, chosen } = this.model;
+    const { file, place } = chosen;
+    const locks = file === "recipe" ? this.model.locks : [];
+    const schemas = new Schemas(welcome!.schemas[file] as ConstructorParameters<typeof Schemas>[0]);
+    const own = schemas
+      .settings(place, this.model.value(file, place) ?? null)
+      .filter((setting) => !locks.length || setting.perLock)
+      .map((setting) => ({ file, place: [...place, setting.name], setting }));
+    if (!this.first) return { all: own, few: FEW };
+    const few = fewSettings(this.model).filter(({ setting }) => !locks.length || setting.perLock);
+    return { all: [...few, ...own], few: few.length };
   }
 
   update(): void {
@@ -52,22 +77,20 @@ export class Settings {
     const document = documents[chosen.file];
     this.element.toggleAttribute("hidden", !document);
     if (!welcome || !document) return;
-    const values = this.model.value(chosen.file, chosen.place) ?? null;
-    const schemas = new Schemas(welcome.schemas[chosen.file] as ConstructorParameters<typeof Schemas>[0]);
     const locks = chosen.file === "recipe" ? this.model.locks : [];
-    const settings = schemas.settings(chosen.place, values).filter((setting) => !locks.length || setting.perLock);
-    const built = JSON.stringify([chosen, locks, settings.map((setting) => [setting.name, setting.kind])]);
+    const { all, few } = this.listed();
+    this.few = few;
+    const built = JSON.stringify([chosen, locks, all.map(({ place, setting }) => [place, setting.kind])]);
     if (built !== this.built) {
       if (this.built) this.element.scrollTop = 0; // which lays the page out
       this.built = built;
       this.kept.clear();
       this.unfolded.clear();
-      this.fields = settings.map((setting) =>
-        makeField(this.model, chosen.file, [...chosen.place, setting.name], setting),
-      );
+      this.fields = all.map(({ file, place, setting }) => makeField(this.model, file, place, setting));
       this.tools.clear();
-      for (const field of this.fields) this.tools.set(field, this.makeTools(field));
-      const nothing = locks.length > 0 && !settings.length;
+      this.kinds.clear();
+      this.fields.forEach((field, k) => this.tools.set(field, this.makeTools(field, this.kindOf(all[k].file, all[k].place))));
+      const nothing = locks.length > 0 && !all.length;
       const of = locks.length === 1 ? "the selected lock" : `${locks.length} locks`;
       this.element.replaceChildren(
         this.search.input,
@@ -82,12 +105,13 @@ export class Settings {
     this.sift();
   }
 
-  private makeTools(field: Field): FieldTools {
+  private makeTools(field: Field, kind: string): FieldTools {
     const { name } = field.setting;
+    this.kinds.set(field, kind);
     return new FieldTools(
       field,
       () => {
-        pin(this.kind, name, !isPinned(this.kind, name));
+        pin(kind, name, !isPinned(kind, name));
         this.sift();
       },
       () => {
@@ -100,22 +124,24 @@ export class Settings {
   /** Shows the fields of first sight, or all, with what the file says now. */
   private sift(): void {
     this.element.classList.toggle("searching", this.search.on);
-    const all = this.opened.has(this.stage) || this.fields.length <= FEW + 1;
+    const all = this.opened.has(this.stage) || this.fields.length <= this.few + 1;
     let shown = 0;
     this.fields.forEach((field, k) => {
       const { name } = field.setting;
-      if (field.isSaid || field.isWrong) this.kept.add(name);
-      const pinned = isPinned(this.kind, name);
+      const listed = !this.first || k < this.few; // a file has a name and a unit in any case
+      if ((field.isSaid && listed) || field.isWrong) this.kept.add(name);
+      const pinned = isPinned(this.kinds.get(field)!, name);
       this.tools.get(field)!.showPinned(pinned);
-      const visible = all || k < FEW || pinned || this.kept.has(name);
+      const visible = all || k < this.few || pinned || this.kept.has(name);
       field.element.toggleAttribute("hidden", this.search.on || !visible);
       if (!visible) return;
       field.update();
       shown++;
     });
-    for (const [field, tools] of this.tools) tools.showFold(shown > FULL, this.unfolded.has(field.setting.name));
+    const lines = shown > Math.max(FULL, this.few);
+    this.fields.forEach((field, k) => this.tools.get(field)!.showFold(lines && !(this.first && k < this.few), this.unfolded.has(field.setting.name)));
     const hidden = this.fields.length - shown;
-    this.more.toggleAttribute("hidden", this.search.on || this.fields.length <= FEW + 1 || (!hidden && !all));
+    this.more.toggleAttribute("hidden", this.search.on || this.fields.length <= this.few + 1 || (!hidden && !all));
     this.more.textContent = all ? "Fewer settings" : `All settings (${hidden} more)`;
     this.more.setAttribute("aria-expanded", String(all));
   }
@@ -137,7 +163,7 @@ export class Settings {
 
 function stageTitle(model: Model): string {
   const { file, place } = model.chosen;
-  if (!place.length) return file === "recipe" ? "recipe" : "shot";
+  if (!place.length) return file === "recipe" ? "essentials" : "shot";
   if (file === "shot" && place[0] === "strands") return "Hair material";
   const op = model.said(file, [...place, "op"]);
   return String(op ?? place[0]).replaceAll("_", " ");

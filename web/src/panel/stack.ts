@@ -34,7 +34,7 @@ export class Stack {
     if (document) {
       if (document.grooms.length) parts.push(this.grooms(document.grooms, document.groom));
       else if (this.model.role.leads) parts.push(h("button", { type: "button", class: "quiet looks-open", "data-stage": "looks", onclick: this.openPresets }, "Looks and presets…"));
-      parts.push(h("h2", {}, "groom"), this.row({ name: "recipe", op: "", place: [], muted: false, solo: false }, document.stages));
+      parts.push(h("h2", {}, "groom"), this.row({ name: "essentials", op: "", place: [], muted: false, solo: false }, document.stages));
       parts.push(...document.stages.map((stage) => this.row(stage, document.stages)), this.adding());
     }
     if (shot) {

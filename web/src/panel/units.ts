@@ -13,8 +13,8 @@ const SCALED: Record<string, [string, number]> = { m: ["mm", 1e3], Pa: ["GPa", 1
 export interface Shown {
   unit: string;
   factor: number; // from SI to what is shown
-  /** As the file says a number that is shown; `typed` is the unit that was typed with it, if one was. */
-  write: (shown: number, typed?: string) => Json;
+  /** As the file says a number that is shown; `to`: the unit that it is to have in the file. */
+  write: (shown: number, to?: string) => Json;
 }
 
 /** How a value of a unit is shown. said: what the file says now; si: whether the file's plain numbers are in SI. */
@@ -27,9 +27,10 @@ export function shownAs(unit: string, said: Json | undefined, recipeUnit: string
   const own = typeof said === "string" ? (said.match(/[a-z]+\s*$/)?.[0].trim() ?? "") : "";
   const shown = IN_FILES.includes(own) ? own : recipeUnit;
   const factor = 1 / (METRES[shown] ?? 1);
-  const write = (x: number, typed = "") => {
-    if (typed && typed !== shown && IN_FILES.includes(typed)) return `${tidy(x / factor / METRES[typed])} ${typed}`;
-    return shown === own ? `${x} ${own}` : x;
+  const write = (x: number, to = "") => {
+    const unit = IN_FILES.includes(to) ? to : shown;
+    const given = unit === shown ? x : tidy(x / factor / METRES[unit]);
+    return unit === recipeUnit && unit !== own ? given : `${given} ${unit}`;
   };
   return { unit: shown, factor, write };
 }

@@ -39,11 +39,14 @@ class Saving:
         self._problems.clear(SAVE, COPIED, RECOVERED, RENAMED)
         if not message.name:
             return write(files, message.file)
+        with_copy = message.file == "shot" and message.with_copy
+        if with_copy:
+            self._name_copy()
         path = write_copy(files, message.file, message.name, as_variant=message.variant)
-        self._go_on_with(message.file, path)
+        self._go_on_with(message.file, path, discard=with_copy)
         return path
 
-    def _go_on_with(self, file: File, path: Path) -> None:
+    def _go_on_with(self, file: File, path: Path, *, discard: bool) -> None:
         """Goes on with a copy that was saved: it holds the changes, and the file that it is a copy of has none."""
         files = self._files
         if files.mode == "shot" and file == "recipe":
@@ -53,17 +56,21 @@ class Saving:
             self._problems.show(COPIED, message, [use, dismiss(COPIED)])
             return
         other = [kind for kind, document in files.documents.items() if kind != file and document.dirty]
-        self._go_on(path, discard=not other)
+        self._go_on(path, discard=discard or not other)
 
     def use_copy(self) -> None:
         """Lets the shot name the copy of its recipe, saves the shot, and opens both.
 
         Raises UserError when there is no copy, or the recipe has changed since.
         """
+        self._name_copy()
+        write(self._files, "shot")
+        self._go_on(self._files.file, discard=True)
+
+    def _name_copy(self) -> None:
+        """Lets the shot name the copy of its recipe."""
         files = self._files
         path, revision = self._copy or (files.file, -1)
         if revision != files.recipe.revision:
             raise UserError(f"{files.recipe.path.name}: was changed since its copy was saved; save a copy again")
         files.set("shot", [(["groom"], os.path.relpath(path, files.file.parent))], 0)
-        write(files, "shot")
-        self._go_on(files.file, discard=True)

@@ -122,7 +122,8 @@ class Step(Message):
 class Save(Message):
     """Saves a file; with a name, a copy beside it, or a variant that extends it, which the session then goes on with.
 
-    anyway: saves a recipe whose groom cannot be made
+    anyway:    saves a recipe whose groom cannot be made
+    with_copy: a copy of a shot names the copy of its recipe that was saved just before
     """
 
     kind: Literal["save"] = "save"
@@ -130,6 +131,7 @@ class Save(Message):
     name: str = Field(default="", max_length=120)
     variant: bool = False
     anyway: bool = False
+    with_copy: bool = False
 
 
 class Open(Message):
