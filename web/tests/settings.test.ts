@@ -118,6 +118,7 @@ test("a pinned setting is at first sight of its stage, also when the page is loa
 /** The ramp of the width of curls, which is opened, with the size that a browser gives it. */
 async function openRamp(): Promise<{ page: Page; ramp: SVGElement; dots: () => SVGElement[] }> {
   const page = await open();
+  page.model.choose("recipe", ["curl"]);
   page.setting(["curl", "width"], { value: 1, ramp: [[0, 1], [1, 1]] }, { ...(page.model.value("recipe", ["curl", "width"]) as object), ramp: [[0, 1], [1, 1]] });
   const fold = find<HTMLDetailsElement>('[data-setting="curl.width"] details');
   expect(texts("summary", fold)).toEqual(["along the hair"]);
