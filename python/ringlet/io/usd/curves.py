@@ -21,6 +21,7 @@ from ringlet.data.pigment import DYE, FIBER, curve_reflectance, display_color
 from ringlet.data.stage import StageSpace
 from ringlet.io.basis import Sampling
 from ringlet.io.space import to_metres
+from ringlet.io.usd.model import CURVES_API
 from ringlet.io.usd.names import identifier, keep_name, original_name
 from ringlet.io.usd.place import Place, placed
 from ringlet.io.usd.pose import posed_points, rest_time
@@ -174,6 +175,7 @@ def define_curves(
     defined.SetWidthsInterpolation(UsdGeom.Tokens.vertex if has_width else UsdGeom.Tokens.constant)
 
     prim = defined.GetPrim()
+    prim.AddAppliedSchema(CURVES_API)
     set_primvar(prim, f"{OWN}id", "uniform", curves.ids)
     for interpolation, attributes in (("uniform", curves.curve), ("vertex", curves.point)):
         expected = len(curves) if interpolation == "uniform" else int(curves.offsets[-1])
@@ -202,7 +204,8 @@ def set_attribute(prim: Usd.Prim, name: str, interpolation: str, values: NDArray
         own = name in COMMON | INNER | SCHEMA | {"width"}
         set_primvar(prim, OWN + name if own else name, interpolation, values)
         return
-    taken = [primvar.GetPrimvarName().removeprefix(OWN) for primvar in UsdGeom.PrimvarsAPI(prim).GetPrimvars()]
+    given = UsdGeom.PrimvarsAPI(prim).GetPrimvarsWithAuthoredValues()
+    taken = [primvar.GetPrimvarName().removeprefix(OWN) for primvar in given]
     stored = OWN + identifier(name, taken)
     set_primvar(prim, stored, interpolation, values)
     keep_name(UsdGeom.PrimvarsAPI(prim).GetPrimvar(stored).GetAttr(), name)

@@ -36,6 +36,7 @@ from ringlet.data.stage import StageSpace
 from ringlet.io.usd.curves import define_curves, own_curves, set_display_color, set_points, set_rest, set_roots
 from ringlet.io.usd.damage import check_bytes
 from ringlet.io.usd.mesh import define_mesh, mesh_at, read_usd_mesh, select_mesh
+from ringlet.io.usd.model import GROOM_API, WORN_API, make_model, set_extents_hint
 from ringlet.io.usd.names import identifier
 from ringlet.io.usd.offsets import NAME as OFFSETS_NAME
 from ringlet.io.usd.offsets import define_offsets, offsets_at
@@ -77,6 +78,7 @@ def write_groom(groom: Groom, path: Path | str, variants: Mapping[str, Groom] | 
     with writing(path) as aside:
         stage = new_stage(aside, space)
         root = UsdGeom.Xform.Define(stage, GROOM).GetPrim()
+        root.AddAppliedSchema(GROOM_API)
         several = any(made.grooms for made in (groom, *(variants or {}).values()))
         _set(root, "version", Types.Int, SEVERAL if several else VERSION)
         _set(root, "surface", Types.Token, CAGE if groom.cage else LIMIT)
@@ -99,6 +101,8 @@ def write_groom(groom: Groom, path: Path | str, variants: Mapping[str, Groom] | 
                 with choice.GetVariantEditContext():
                     _define(stage, variant, space, path)
             choice.SetVariantSelection(BASE)
+        make_model(root, groom.recipe)
+        set_extents_hint(root)
         stage.Save()
 
 
@@ -151,6 +155,7 @@ def _define(stage: Usd.Stage, groom: Groom, space: StageSpace, file: Path | str)
     for accessory in groom.accessories:
         taken.append(identifier(accessory.mesh.name, taken))
         prim = define_mesh(stage, f"{ACCESSORIES}/{taken[-1]}", accessory.mesh, space, file)
+        prim.AddAppliedSchema(WORN_API)
         _set(prim, "vertices", Types.IntArray, Vt.IntArray.FromNumpy(accessory.vertices.astype(np.int32)))
 
 

@@ -30,6 +30,7 @@ from ringlet.io.usd.curves import OWN, add_own_attributes, set_attribute, set_di
 from ringlet.io.usd.groom import GROOM, LOCKS, groom_at
 from ringlet.io.usd.material import bind_hair_material
 from ringlet.io.usd.mesh import mesh_at
+from ringlet.io.usd.model import HAIRS_API
 from ringlet.io.usd.stage import Source, prims, reading, reading_more
 from ringlet.io.usd.stream import StreamWriter
 from ringlet.io.usd.surfaces import shown_surfaces
@@ -102,6 +103,7 @@ def _define(
     prim = defined.GetPrim()
     defined.CreateProceduralSystemAttr("hydraGenerativeProcedural")
     UsdGeom.PrimvarsAPI(prim).CreatePrimvar(TYPE, Types.Token, "constant").Set(KIND)
+    prim.AddAppliedSchema(HAIRS_API)
     prim.CreateRelationship(f"primvars:{OWN}locks", custom=True).SetTargets([Sdf.Path(LOCKS)])
     set_primvar(prim, f"{OWN}id", "uniform", curves.ids)
     lock = np.repeat(np.arange(len(hairs.axis), dtype=np.int32), np.diff(hairs.layout["first"])) + np.int32(first_lock)

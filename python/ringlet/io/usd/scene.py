@@ -24,6 +24,7 @@ from ringlet.io.usd.curves import COMMON, curves_at, define_curves, points_at, s
 from ringlet.io.usd.groom import GROOM, GUIDES, LOCKS
 from ringlet.io.usd.material import HAIR_BSDF, OWN_MATERIAL, bind_hair_material
 from ringlet.io.usd.mesh import define_mesh, mesh_at
+from ringlet.io.usd.model import make_model, set_extents_hint
 from ringlet.io.usd.names import identifier
 from ringlet.io.usd.on_demand import OnDemand, on_demand_prims
 from ringlet.io.usd.place import Place
@@ -177,7 +178,7 @@ def write_usd_scene(scene: HairScene, path: Path, space: StageSpace) -> None:
     """Writes curves and surfaces below ``/groom``, in metres and axes of ``space`` and at the rate of the scene."""
     with writing(path) as aside:
         stage = new_stage(aside, replace(space, fps=scene.space.fps))
-        UsdGeom.Xform.Define(stage, GROOM)
+        root = UsdGeom.Xform.Define(stage, GROOM).GetPrim()
         if len(scene.frames):
             stage.SetStartTimeCode(float(scene.frames[0]))
             stage.SetEndTimeCode(float(scene.frames[-1]))
@@ -188,6 +189,8 @@ def write_usd_scene(scene: HairScene, path: Path, space: StageSpace) -> None:
         for mesh, clip in scene.bodies:
             taken.append(identifier(mesh.name.split("/")[-1].split(" ")[-1], taken))
             _define_body(stage, f"{GROOM}/{taken[-1]}", mesh, clip, space, path)
+        make_model(root)
+        set_extents_hint(root, scene.frames.tolist())
         stage.Save()
 
 

@@ -14,7 +14,8 @@ from ringlet.data.curves import Curves
 from ringlet.data.reads import recorded, refuse_inputs
 from ringlet.data.stage import StageSpace
 from ringlet.io.usd.curves import set_points
-from ringlet.io.usd.groom import choose_variant, groom_prim
+from ringlet.io.usd.groom import GROOM, choose_variant, groom_prim
+from ringlet.io.usd.model import set_extents_hint
 from ringlet.io.usd.place import Place
 from ringlet.io.usd.stage import check_target, new_stage, reading, writing
 from ringlet.io.usd.velocities import Velocities
@@ -113,4 +114,5 @@ class StreamWriter:
             for velocities in self._velocities_of_prim.values():
                 velocities.finish()
             self.finish()
+            set_extents_hint(self._stage.OverridePrim(GROOM), sorted(set(self._frames)))
             self.layer.Save()
