@@ -31,6 +31,8 @@ from .api.grooms import write_groom as write_groom
 from .api.hairs import build_hairs as build_hairs
 from .api.hairs import measure_hairs as measure_hairs
 from .api.hairs import write_hairs as write_hairs
+from .api.job import Cancelled as Cancelled
+from .api.job import Job as Job
 from .api.live import head_motion as head_motion
 from .api.live import live_shot as live_shot
 from .api.live import trunk_motion as trunk_motion
@@ -60,6 +62,7 @@ from .api.shots import rest_place as rest_place
 from .api.shots import simulate as simulate
 from .api.shots import write_loft as write_loft
 from .api.shots import write_simulation as write_simulation
+from .api.simulation import Simulation as Simulation
 from .api.threads import threads as threads
 from .api.threads import use_threads as use_threads
 from .api.upgrades import Upgrade as Upgrade

@@ -15,13 +15,21 @@ from ringlet import io
 from ringlet.api.progress import Progress
 from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom, shows
+from ringlet.data.toml import tables_of, to_toml
 from ringlet.groom import Memory, Recipe
 from ringlet.groom.operators import Drawn
 
 
-def read_recipe(path: Path | str) -> Recipe:
-    """Reads a recipe from a TOML file, with every setting checked."""
-    return grooms.read_recipe(Path(path))
+def read_recipe(path: Path | str, settings: Mapping[str, Any] | None = None) -> Recipe:
+    """Reads a recipe from a TOML file, with every setting checked.
+
+    settings: values in place of those of the file, by name, such as ``{"curl.width": "8 mm"}``
+    """
+    path = Path(path)
+    if not settings:
+        return grooms.read_recipe(path)
+    changed = to_toml({"ringlet": 2, "extends": path.name, **tables_of(settings)})
+    return grooms.parse_recipe(changed, path.with_name(f"{path.name} with settings"))
 
 
 def build_groom(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, suppress
 from dataclasses import replace
 from pathlib import Path
@@ -20,15 +20,24 @@ from ringlet.data.errors import UserError
 from ringlet.data.files import check_place, same_place, within
 from ringlet.data.groom import Groom
 from ringlet.data.reads import recorded, unrecorded
+from ringlet.data.settings import read_toml
+from ringlet.data.toml import merged, tables_of, to_toml
 from ringlet.deform.orientation import outward
 from ringlet.rest.loft import Loft
 from ringlet.shot import Shot
 from ringlet.sim import Checkpoints, Garment, Motion, Obstacle
 
 
-def read_shot(path: Path | str) -> Shot:
-    """Reads a shot from a TOML file, with every setting checked."""
-    return shots.read_shot(Path(path))
+def read_shot(path: Path | str, settings: Mapping[str, Any] | None = None) -> Shot:
+    """Reads a shot from a TOML file, with every setting checked.
+
+    settings: values in place of those of the file, by name, such as ``{"strands.damping": 0.2}``
+    """
+    path = Path(path)
+    if not settings:
+        return shots.read_shot(path)
+    _, tables = read_toml(path, "shot")
+    return shots.parse_shot(to_toml(merged(tables, tables_of(settings))), path)
 
 
 def simulate(

@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ringlet.data.frames import frame_range
+
 
 @dataclass
 class CachedCloth:
@@ -62,6 +64,10 @@ class Cache:
     cloths: list[CachedCloth] = field(default_factory=list)
     touches: list[Touches] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+
+    def __repr__(self) -> str:
+        cloths = "".join(f", {cloth.name}" for cloth in self.cloths)
+        return f"Cache({frame_range(self.frames)}, {self.points.shape[1]:,} points{cloths})"
 
 
 @dataclass

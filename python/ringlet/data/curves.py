@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from html import escape
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from ringlet.data import limits
 from ringlet.data.attributes import check_attribute
 from ringlet.data.errors import UserError
+from ringlet.data.sketch import sketch
 
 ID_HALVES = "id_high", "id_low"
 LEAST_EDGE = 1e-8  # [m] an edge that is shorter has no direction in single precision
@@ -43,6 +45,14 @@ class Curves:
 
     def __len__(self) -> int:
         return len(self.offsets) - 1
+
+    def __repr__(self) -> str:
+        kinds = {"curve": self.curve, "point": self.point}
+        named = [f"{kind}: {', '.join(sorted(values))}" for kind, values in kinds.items() if values]
+        return f"Curves({'; '.join([f'{len(self):,} curves, {len(self.points):,} points', *named])})"
+
+    def _repr_html_(self) -> str:
+        return f"<p>{escape(repr(self))}</p>{sketch(self.points, self.offsets)}"
 
     def __getitem__(self, index: int) -> NDArray[np.floating]:
         """The points of one curve, a view of shape (k, 3)."""

@@ -35,6 +35,11 @@ def frames_within(held: NDArray[np.float64], asked: tuple[float, float] | None, 
     return chosen
 
 
+def frame_range(held: NDArray[np.float64]) -> str:
+    """Frames in words: ``frames 1 to 48``."""
+    return f"frames {held[0]:g} to {held[-1]:g}" if len(held) else "no frames"
+
+
 def gaps(held: NDArray[np.float64]) -> list[int]:
     """Whole frames that are missing between two frames of a file that are more than one apart."""
     pairs = zip(held[:-1].tolist(), held[1:].tolist(), strict=True)

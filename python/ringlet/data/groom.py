@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass, field
+from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
 from ringlet.data.precision import origin_of
+from ringlet.data.sketch import sketch
 from ringlet.data.stage import StageSpace
 
 # Attributes of locks that groom operators write and a run reads.
@@ -130,6 +132,13 @@ class Groom:
     hidden: list[str] = field(default_factory=list)
     grooms: dict[str, dict[str, Any]] = field(default_factory=dict)
     offsets: HairOffsets | None = None
+
+    def __repr__(self) -> str:
+        grooms = f" of {', '.join(self.grooms)}" if self.grooms else ""
+        return f"Groom({len(self.locks):,} locks{grooms} and {len(self.guides):,} guides on {self.scalp.name})"
+
+    def _repr_html_(self) -> str:
+        return f"<p>{escape(repr(self))}</p>{sketch(self.locks.points, self.locks.offsets)}"
 
     def check_bound(self, what: str) -> None:
         """Refuses locks that are not bound to the scalp; ``what`` asks, for messages."""

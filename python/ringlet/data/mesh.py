@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from ringlet.data.frames import frame_range
+
 if TYPE_CHECKING:
     from ringlet.data.texture import Texture
 
@@ -43,6 +45,9 @@ class Mesh:
     vectors: dict[str, NDArray[np.float64]] = field(default_factory=dict)
     textures: dict[str, Texture] = field(default_factory=dict)
 
+    def __repr__(self) -> str:
+        return f"Mesh({self.name!r}, {len(self.points):,} points, {len(self.triangles):,} triangles)"
+
     def region(self, name: str | None) -> NDArray[np.int32]:
         """Triangles of a named region; all of them for None. Raises KeyError with the names there are."""
         if name is None:
@@ -74,6 +79,9 @@ class Clip:
     frames: NDArray[np.float64]
     points: NDArray[np.float64]
     fps: float
+
+    def __repr__(self) -> str:
+        return f"Clip({frame_range(self.frames)}, {self.points.shape[1]:,} points, {self.fps:g} fps)"
 
     def at(self, frame: float) -> NDArray[np.float64]:
         """Positions at a frame, linear between samples, held beyond the ends; shape (n, 3)."""

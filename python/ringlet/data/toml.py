@@ -4,12 +4,38 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Mapping
 from typing import Any
+
+import numpy as np
 
 
 def to_toml(data: dict[str, Any]) -> str:
     """The text of a TOML file: single values first, then tables, and lists of tables as ``[[name]]``."""
     return "".join(_lines(data, ())).lstrip("\n")
+
+
+def tables_of(settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Tables of settings that are given by name: ``{"curl.width": 1}`` is ``{"curl": {"width": 1}}``."""
+    tables = dict[str, Any]()
+    for name, value in settings.items():
+        *places, key = name.split(".")
+        table = tables
+        for place in places:
+            table = table.setdefault(place, {})
+        table[key] = value.item() if isinstance(value, np.generic) else value
+    return tables
+
+
+def merged(tables: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Tables with changes, table by table."""
+    return {
+        **tables,
+        **{
+            key: merged(tables[key], value) if isinstance(value, dict) and isinstance(tables.get(key), dict) else value
+            for key, value in changes.items()
+        },
+    }
 
 
 def _lines(table: dict[str, Any], place: tuple[str, ...]) -> list[str]:

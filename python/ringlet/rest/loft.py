@@ -38,6 +38,9 @@ class Loft:
     stiffened: Array | None = None
     support: Array | None = None
 
+    def __repr__(self) -> str:
+        return f"Loft({len(self.rest):,} locks, up to {1e3 * self.off.max(initial=0.0):.2g} mm off)"
+
     def lost(self) -> dict[str, dict[str, float]]:
         """The deviation from the groom, with the loft and, if known, without [m]: ``with max`` … of each measure.
 

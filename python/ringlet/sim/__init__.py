@@ -8,7 +8,7 @@ from ringlet.sim.obstacle import Body, Obstacle
 from ringlet.sim.run_inputs import changed_input, run_inputs
 from ringlet.sim.scene import Scene
 from ringlet.sim.shot_strands import with_words
-from ringlet.sim.simulate import StoredTouches, check_frames, play, replay, simulate
+from ringlet.sim.simulate import Frame, StoredTouches, check_frames, play, replay, simulate
 from ringlet.sim.strands import Strands
 from ringlet.sim.work import heavy_work
 
@@ -16,6 +16,7 @@ __all__ = [
     "Body",
     "Checkpoints",
     "Cloth",
+    "Frame",
     "Garment",
     "Motion",
     "Obstacle",

@@ -97,6 +97,9 @@ class Frame:
     statistics: dict[str, Any]
     touches: Touches | None = None
 
+    def __repr__(self) -> str:
+        return f"Frame({self.number:g}, {len(self.points):,} points)"
+
     @classmethod
     def now(cls, number: float, motion: Motion, statistics: dict[str, Any], touches: bool) -> Frame:
         """The frame at which a motion is."""
