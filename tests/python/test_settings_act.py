@@ -53,6 +53,10 @@ TABLES: dict[str, tuple[str, str]] = {
     "ScalpSettings": ("scalp", ""),
     "Edge": ("scalp.edge", "[scalp.edge]\nregion = 'front'\nwidth = 1\n"),
     "HelperCurves": ("curves.tail", TAIL + "[[shape]]\nop = 'attract'\ncurve = 'tail'\n"),
+    "Gradient": (
+        "gradients.taper",
+        TAIL + "[gradients.taper]\ntoward = [0, 1, 0]\nend = 9\n[guides]\nlength = { value = 6, map = 'taper' }\n",
+    ),
     "HelperMesh": ("meshes.round", ROUND + "[[shape]]\nop = 'grow_to'\nmesh = 'round'\n"),
     "Grown": ("guides", TAIL),
     "Mirror": ("guides.mirror", "[guides.mirror]\n"),
@@ -130,6 +134,7 @@ VALUES = {
     "Grown.drawn": [["tail"]],
     "Grown.whorl": [False],
     "PartLine.curve": ["tail"],
+    "Gradient.curve": ["tail"],
     "HelperCurves.points": [[[0, 9, 0], [3, 14, 1]]],
     "Locks.density": ["paint"],
     "Tie.curve": ["tail"],

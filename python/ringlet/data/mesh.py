@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -30,6 +31,7 @@ class Mesh:
     maps:      painted values by name, at the corners of each triangle, shape (m, 3), float64
     vectors:   painted directions by name, at the corners of each triangle, shape (m, 3, 3), float64, as the points are
     textures:  painted values by name, as pictures over ``uv``
+    gradients: values by name that are computed from places (n, 3) [m], shape (n,)
     """
 
     name: str
@@ -44,6 +46,7 @@ class Mesh:
     maps: dict[str, NDArray[np.float64]] = field(default_factory=dict)
     vectors: dict[str, NDArray[np.float64]] = field(default_factory=dict)
     textures: dict[str, Texture] = field(default_factory=dict)
+    gradients: dict[str, Callable[[NDArray[np.float64]], NDArray[np.float64]]] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         return f"Mesh({self.name!r}, {len(self.points):,} points, {len(self.triangles):,} triangles)"

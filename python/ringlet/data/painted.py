@@ -59,14 +59,19 @@ def painted(name: str, curves: Curves, scalp: Mesh, what: str) -> NDArray[np.flo
         values = np.asarray(curves.curve[name], np.float64)
     elif name in scalp.textures:
         values = _from_texture(name, curves, scalp, what, scalp.textures[name].at)
+    elif name in scalp.gradients:
+        corners = scalp.points[scalp.triangles[curves.curve["root_triangle"]]]
+        values = scalp.gradients[name](np.einsum("kc,kcx->kx", curves.curve["root_barycentric"], corners))
     elif name in scalp.maps:
         corners = scalp.maps[name][curves.curve["root_triangle"]]
         within = np.maximum(curves.curve["root_barycentric"], 0.0)  # rounding leaves roots on edges just outside
         values = np.einsum("kc,kc->k", corners, within)
     else:
-        known = sorted(own | scalp.textures.keys() | scalp.maps.keys())
+        known = sorted(own | scalp.textures.keys() | scalp.gradients.keys() | scalp.maps.keys())
         remedy = (
-            did_you_mean(name, known) if known else "; paint one as a primvar of floats, or name a picture in [maps]"
+            did_you_mean(name, known)
+            if known
+            else "; paint a primvar of floats, name a picture in [maps], or add [gradients]"
         )
         raise UserError(f"{what} is '{name}', which neither the locks nor {scalp.name} have{remedy}")
     if (bad := np.flatnonzero(~(np.isfinite(values) & (values >= 0.0)))).size:

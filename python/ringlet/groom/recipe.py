@@ -13,6 +13,7 @@ from ringlet.groom.color import ColorSettings
 from ringlet.groom.edge import Edge
 from ringlet.groom.edits import Edit
 from ringlet.groom.fiber import FiberSettings
+from ringlet.groom.gradient import Gradient
 from ringlet.groom.hair_settings import HairSettings
 from ringlet.groom.helper_mesh import HelperMesh
 from ringlet.groom.helpers import HelperCurves
@@ -73,6 +74,9 @@ class Recipe(Section):
     scalp: ScalpSettings = Field(default=ScalpSettings(), description="the surface that hair grows on")
     maps: dict[str, str] = Field(
         default={}, description="pictures over the texture coordinates of the scalp, as maps by name: black 0, white 1"
+    )
+    gradients: dict[str, Gradient] = Field(
+        default={}, description="maps by name that are computed from the height of roots, or their distance from lines"
     )
     curves: dict[str, HelperCurves] = Field(
         default={}, description="helper curves by name, which guides and operators refer to"

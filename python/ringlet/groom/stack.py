@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -72,9 +73,10 @@ def make_groom(
         run.shapes = run.through(shaping(recipe))
         before_contact = run.through(curling(recipe, adopted))
         curves = run.through([("collide", recipe.collide)])
-        locks = _with_textures_of_hairs(pinned(curves, recipe.pin, scalp, recipe.seed), recipe.hairs, scalp)
-        locks = colored(locks, recipe.color, recipe.fiber, scalp)
-        locks = loaded(run.worn, _with_mask_of_hairs(locks, recipe, scalp))
+        painted_on = run.scalp.mesh
+        locks = _with_maps_of_hairs(pinned(curves, recipe.pin, painted_on, recipe.seed), recipe.hairs, painted_on)
+        locks = colored(locks, recipe.color, recipe.fiber, painted_on)
+        locks = loaded(run.worn, _with_mask_of_hairs(locks, recipe, painted_on))
     except UserError as error:
         where = recipe.path.name if recipe.path else "recipe"
         raise UserError(f"{where}: {error}", error.fixes) from error
@@ -137,6 +139,10 @@ def _begin(
     if recipe.scalp.edge is not None:
         surface = _on_edge(recipe, recipe.scalp.edge, surface, helpers)
         key = key_of(key, recipe.scalp.edge.model_dump_json().encode())
+    helper = Context(recipe.seed, surface, "gradients", curves=helpers).helper
+    gradients = {name: one.of(surface, helper) for name, one in recipe.gradients.items()}
+    surface.mesh = replace(scalp, gradients=gradients) if gradients else scalp
+    key = key_of(key, *(f"{name} {one.model_dump_json()}".encode() for name, one in recipe.gradients.items()))
     meshes = {**{name: m for name, h in recipe.meshes.items() if (m := h.inline_mesh(name))}, **meshes}
     for name, mesh in meshes.items():
         key = key_of(key, name.encode(), mesh.points.tobytes(), mesh.triangles.tobytes())
@@ -157,13 +163,13 @@ def _on_edge(recipe: Recipe, edge: Edge, scalp: Scalp, helpers: Mapping[str, Cur
     return edge.of(scalp, Context(recipe.seed, scalp, "scalp", curves=helpers).helper, recipe.seed)
 
 
-def _with_textures_of_hairs(locks: Curves, hairs: HairSettings, scalp: Mesh) -> Curves:
-    """Adds the textures that hair settings name, sampled at the roots, as curve attributes of the locks.
+def _with_maps_of_hairs(locks: Curves, hairs: HairSettings, scalp: Mesh) -> Curves:
+    """Adds the textures and gradients that hair settings name, sampled at the roots, as curve attributes of the locks.
 
-    A groom file holds no textures, and hairs are made from that file alone.
+    A groom file holds neither, and hairs are made from that file alone.
     """
     values = [value for table in (hairs, *hairs.sections.values()) for _, value in table if isinstance(value, Varied)]
-    used = {value.map for value in values if value.map in scalp.textures}
+    used = {value.map for value in values if value.map in scalp.textures.keys() | scalp.gradients.keys()}
     sampled = {name: painted(name, locks, scalp, "hairs").astype(np.float32) for name in sorted(used - {None})}
     return Curves(locks.points, locks.offsets, locks.ids, {**locks.curve, **sampled}, locks.point) if sampled else locks
 
