@@ -88,6 +88,7 @@ export class App {
     const snapshots = new Snapshots(model, viewer, this.look, this.tray);
     const takes = new TakePlayer(model, viewer, this.timeline, () => snapshots.take("keep_take"));
     snapshots.play = (id) => takes.play(id);
+    snapshots.makeShot = (id) => takes.makeShot(id);
     live.buttons.append(takes.keep);
     const notes = new Notes(model, viewer, this.look, this.tray);
     const references = new References(model, viewer, this.tray, this.notices);

@@ -513,6 +513,13 @@ export interface KeepTake {
   picture: string;
 }
 
+/** Writes a shot with the motion of a take, opens it and starts it, compared with the take. */
+export interface MakeShot {
+  kind: "make_shot";
+  id: string;
+  name?: string;
+}
+
 /** Takes a snapshot of the current look. picture: PNG or JPEG in base64. */
 export interface TakeSnapshot {
   kind: "take_snapshot";
@@ -1053,6 +1060,7 @@ export type FromPage =
   | MoveHead
   | Blow
   | KeepTake
+  | MakeShot
   | TakeSnapshot
   | EditSnapshot
   | DeleteSnapshot

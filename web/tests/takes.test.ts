@@ -4,7 +4,7 @@ import { expect, test, vi } from "vitest";
 import { Matrix4 } from "three";
 import type { Compared, LiveTake, Snapshot } from "../src/protocol";
 import { Take } from "../src/view/take";
-import { control, find, press, slide } from "./controls";
+import { control, dialog, fill, find, press, slide } from "./controls";
 import { open, type Page } from "./page";
 
 const VERTICES = 4;
@@ -122,4 +122,18 @@ test("the take of the shot that was made of it goes with its frames", async () =
   vi.advanceTimersByTime(300);
   expect(shift(page)).toBeCloseTo(0.018, 5);
   expect(find(".take-player").hidden).toBe(true);
+});
+
+test("a shot is made of a take under a name, and compared with it by a wipe", async () => {
+  const page = await open();
+  page.hear({ kind: "snapshots", snapshots: [snapshot(page, 4)] });
+  press("t", {}, page.app.viewer.canvas);
+  control("Make a shot of the take").click();
+  fill(control<HTMLInputElement>("Name of the shot", dialog()), " nod_2 ");
+  control("Make the shot", dialog()).click();
+  expect(page.last("make_shot")).toEqual({ kind: "make_shot", id: "one", name: "nod_2" });
+  page.hear(compared("one"));
+  expect(page.app.viewer.looks.arrangement).toBe("wipe");
+  page.hear(compared("", ""));
+  expect(page.app.viewer.looks.arrangement).toBe("split");
 });

@@ -11,6 +11,7 @@ from ringlet.io.usd.deformable import Rod, write_deformable_scene
 from ringlet.io.usd.groom import as_written, is_groom, read_groom, write_groom
 from ringlet.io.usd.hairs import HairWriter, read_hair_frames, read_hairs, read_stage
 from ringlet.io.usd.head import head_path, write_head
+from ringlet.io.usd.head_clip import write_head_clip
 from ringlet.io.usd.host_meshes import PolygonMesh, write_polygon_meshes
 from ringlet.io.usd.mesh import Body, read_bodies, read_body, read_meshes, surface_paths, unread_surfaces
 from ringlet.io.usd.offsets import read_offsets, write_offsets
@@ -73,6 +74,7 @@ __all__ = [
     "write_deformable_scene",
     "write_groom",
     "write_head",
+    "write_head_clip",
     "write_offsets",
     "write_polygon_meshes",
     "write_rest",

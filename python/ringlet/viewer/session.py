@@ -32,6 +32,7 @@ from ringlet.viewer.play.live_hair import LiveHair
 from ringlet.viewer.play.lock_motion import LockMotions, Question
 from ringlet.viewer.play.mover import LiveScene
 from ringlet.viewer.play.playback import Playback
+from ringlet.viewer.play.take_shot import FIRST, write_take_shot
 from ringlet.viewer.project import Project
 from ringlet.viewer.publisher import Publisher
 from ringlet.viewer.show import display_colors
@@ -85,6 +86,7 @@ class Session:
     def _load(self, file: Path) -> None:
         """Opens a file; raises UserError for one that cannot be read, before anything changes."""
         files, viewport = Files(file, self.project), Viewport(self.publisher)
+        self._when_shown: Callable[[], None] | None = None
         scene = None if "recipe" in files.documents else read_scene(file)
         self.files, self._viewport = files, viewport
         self._recovery = Recovery(files, self.problems)
@@ -234,7 +236,17 @@ class Session:
             self.publisher.publish("guides", guides)
         if self.files.mode == "shot" and not display.draft:
             self._playback.set_groom(display)
+            do, self._when_shown = self._when_shown, None
+            if do is not None:
+                self._do(do)
         self._show_live()
+
+    def _do(self, do: Callable[[], None]) -> None:
+        """Does what waited for a groom; what it refuses is said."""
+        try:
+            do()
+        except UserError as error:
+            self.pages.trouble(str(error))
 
     def _live_scene(self) -> LiveScene:
         """What would move live now; raises UserError where nothing can."""
@@ -261,6 +273,23 @@ class Session:
         groom = self._viewport.made("take").groom
         current = self._viewport.revision == self.files.recipe.revision
         self._review.keep_take(message, self._live.recent.take(groom if current else None))
+
+    def _make_shot(self, message: protocol.MakeShot, page: Page) -> None:
+        """Writes a shot of a take and opens it; it starts, compared with the take, once its groom is made."""
+        review = self._review
+        motion = review.take_of_shot(message.id)
+        made = write_take_shot(self.files, motion, review.snapshots.shot(message.id), message.name)
+        try:
+            review.keep_with_shot(message.id, made.recipe, made.text, FIRST)
+        except UserError:
+            made.remove()
+            raise
+        self._open(made.shot, discard=False)
+        self._when_shown = lambda: self._start_made(message.id, page)
+
+    def _start_made(self, take: str, page: Page) -> None:
+        self._playback.play(protocol.Play(action="start"))
+        self._comparer.compare(protocol.Compare(to="snapshot", name=take), page.queue)
 
     # Messages
 
@@ -324,6 +353,8 @@ class Session:
                 self._grooming.request(large=True)
             case protocol.Cancel():
                 self._grooming.cancel_by_hand()
+            case protocol.MakeShot():
+                self._make_shot(message, page)
             case protocol.Compare():
                 self._comparer.compare(message, page.queue)
             case protocol.Play():

@@ -22,6 +22,8 @@ export class Snapshots {
   private waiting: Kept | null = null;
   /** Plays the take of a snapshot. */
   play = (_: string): void => {};
+  /** Makes a shot of it. */
+  makeShot = (_: string): void => {};
 
   constructor(
     private readonly model: Model,
@@ -83,6 +85,7 @@ export class Snapshots {
       "span",
       { class: "group" },
       one.seconds > 0 && iconButton("play", "Play the take", () => this.play(one.id), { disabled: !leads }),
+      one.seconds > 0 && iconButton("film", "Make a shot of the take", () => this.makeShot(one.id), { disabled: !leads }),
       iconButton("load", "Load: use its settings", () => model.say({ kind: "load_snapshot", id: one.id }), { disabled: !leads }),
       iconButton("camera", "Use its camera and light", () => this.look.apply(one.look, false)),
       iconButton("bin", "Delete", () => this.askDelete(one, title)),

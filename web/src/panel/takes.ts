@@ -9,6 +9,7 @@ import { Take } from "../view/take";
 import type { Arrangement, Side } from "../view/looks";
 import type { Viewer } from "../view/viewer";
 import { compareWith } from "./compare";
+import { openDialog } from "./dialog";
 import { bindKey, plainKey } from "./keys";
 import type { TimelineBar } from "./timeline";
 
@@ -24,8 +25,8 @@ export class TakePlayer {
   /** When step 0 was to be seen [ms]. */
   private begun = 0;
   private asked = 0;
-  /** The snapshot whose take is to be seen alone, and how looks were arranged before one was. */
-  private alone = "";
+  /** The snapshot whose take is to be seen in an arrangement, and how looks were arranged before. */
+  private wanted: { id: string; arrangement: Arrangement } | null = null;
   private before: Arrangement | null = null;
 
   /** keep: keeps the last seconds as a snapshot */
@@ -41,6 +42,7 @@ export class TakePlayer {
     this.slider.addEventListener("input", () => this.stand(Number(this.slider.value)));
     model.hear("live_take", (message) => this.add(message));
     model.on("compared", () => this.compared());
+    model.hear("trouble", () => (this.wanted = null)); // it may have been refused
     for (const kind of ["hairs", "locks", "body"] as const)
       model.hear(kind, () => {
         this.drawn.clear(); // they came at rest
@@ -53,9 +55,25 @@ export class TakePlayer {
 
   /** Shows the take of a snapshot alone, as it plays. */
   play(id: string): void {
-    this.alone = id;
+    this.wanted = { id, arrangement: "flip" };
     if (this.sideOf(id)) this.compared();
     else compareWith(this.model, `snapshot:${id}`);
+  }
+
+  /** Asks for a name, and makes a shot of the take of a snapshot, which is then compared with it by a wipe. */
+  makeShot(id: string): void {
+    const name = h("input", { type: "text", maxlength: 80, placeholder: "a name that is free", "aria-label": "Name of the shot" });
+    const make = h("button", { type: "button", class: "primary" }, "Make the shot");
+    const what = "Writes a shot with the motion of the head, the material and the recipe of the take, opens it, and simulates it in contact.";
+    const dialog = openDialog("Make a shot of the take", h("p", {}, what), name, make);
+    const say = () => {
+      this.wanted = { id, arrangement: "wipe" };
+      this.model.say({ kind: "make_shot", id, name: name.value.trim() });
+      dialog.close();
+    };
+    make.addEventListener("click", say);
+    name.addEventListener("keydown", (event) => event.key === "Enter" && (event.preventDefault(), say()));
+    name.focus();
   }
 
   private sideOf(id: string): Side | undefined {
@@ -85,11 +103,12 @@ export class TakePlayer {
       viewer.looks.arrangement = this.before ?? viewer.looks.arrangement;
       this.before = null;
     }
-    const side = this.sideOf(this.alone);
-    if (side && this.alone) {
-      this.alone = "";
+    const { wanted } = this;
+    const side = wanted && this.sideOf(wanted.id);
+    if (side) {
+      this.wanted = null;
       this.before ??= viewer.looks.arrangement;
-      Object.assign(viewer.looks, { arrangement: "flip", front: side });
+      Object.assign(viewer.looks, { arrangement: wanted.arrangement, front: side });
       viewer.invalidate();
       model.tell("arranged");
       model.tell("look");

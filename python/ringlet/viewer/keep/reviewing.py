@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from pathlib import Path
 
 import numpy as np
 
@@ -10,10 +11,11 @@ from ringlet.data.errors import UserError
 from ringlet.groom import Recipe
 from ringlet.viewer import protocol
 from ringlet.viewer.files.open_files import Files
+from ringlet.viewer.files.variant import settings_of
 from ringlet.viewer.keep.notes import NoteStore
 from ringlet.viewer.keep.references import ReferenceStore
 from ringlet.viewer.keep.review_folder import ReviewFolder, decode_picture
-from ringlet.viewer.keep.snapshots import SnapshotStore, load, recipe_of
+from ringlet.viewer.keep.snapshots import SnapshotStore, Texts, keep_with_shot, load, recipe_of
 from ringlet.viewer.keep.views import ViewStore
 from ringlet.viewer.project import Project
 from ringlet.viewer.publisher import Publisher
@@ -129,6 +131,29 @@ class Reviewing:
             self._notice(
                 "What the recipe extends has changed since the snapshot; it is loaded as a recipe that extends no other"
             )
+
+    def take_of_shot(self, id: str) -> LiveTake:
+        """The take of a snapshot, for a shot with the open recipe; raises UserError where it is of another one."""
+        document, stored = self._files.recipe, self.snapshots[id]
+        motion = self.snapshots.motion(id)
+        if motion is None:
+            raise UserError(f"take: snapshot {id} holds no motion; keep a take of live hair")
+        if stored.muted or stored.solo:
+            raise UserError("take: stages were muted in it; take them out of the recipe, and keep a take again")
+        if not self._files.clean:
+            raise UserError(f"take: {self._files.file.name} has unsaved changes; save them, and make the shot then")
+        if settings_of(recipe_of(self.snapshots.texts(id), self._files)) != settings_of(document.model):
+            raise UserError(
+                f"take: {document.path.name} has changed since it was kept; load its settings and save them, and make "
+                "the shot then"
+            )
+        return motion
+
+    def keep_with_shot(self, id: str, recipe: Path, text: str, first: int) -> None:
+        """Keeps a take in the review folder of the shot that was made of it. text: of the recipe of the shot"""
+        resolved = self._files.parse(text, recipe).text or text
+        folder = ReviewFolder(recipe, self._project)
+        keep_with_shot(self.snapshots, id, folder, Texts(text, resolved, ""), first)
 
     def snapshot_to_compare(self, id: str) -> tuple[Recipe, frozenset[str], str, str]:
         """Recipe, muted stages, name, and author and time of a snapshot; raises UserError when there is none."""

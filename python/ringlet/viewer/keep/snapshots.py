@@ -135,6 +135,24 @@ class SnapshotStore(Entries[Stored]):
         return Texts(written, resolved or written, edits)
 
 
+def keep_with_shot(store: SnapshotStore, id: str, folder: ReviewFolder, texts: Texts, first: int) -> None:
+    """Keeps a take in the review folder of the shot that was made of it, whose recipe is another.
+
+    first: frame of the shot at which it begins
+    """
+    copy = SnapshotStore(folder)
+    try:
+        for suffix in (".png", SHOT, TAKE):
+            if store.folder.file(store.file(id, suffix)).exists():
+                copy.folder.write_bytes(copy.file(id, suffix), store.folder.bytes(store.file(id, suffix), MOST_TAKE))
+        copy.folder.write_text(copy.file(id, RECIPE), texts.written)
+        copy.folder.write_text(copy.file(id, RESOLVED), texts.resolved)
+        copy.add(store[id].model_copy(update={"first": first, "muted": [], "solo": ""}), id)
+    except UserError:
+        copy.folder.remove(*(copy.file(id, suffix) for suffix in SUFFIXES))
+        raise
+
+
 def recipe_of(texts: Texts, files: Files) -> Recipe:
     """The recipe of a snapshot, whatever has become of what it extends."""
     document = files.recipe

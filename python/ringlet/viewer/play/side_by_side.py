@@ -74,7 +74,7 @@ class Followers:
 
     def stop(self) -> None:
         """Ends all of them, and the thread."""
-        for side in [*self._moving]:
+        for side in tuple(self._moving):
             self._end(side)
         if self._worker is not None:
             self._worker.stop(0.0)

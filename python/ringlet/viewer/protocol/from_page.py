@@ -24,7 +24,7 @@ from ringlet.viewer.protocol.message import (
 from ringlet.viewer.protocol.painting import Draw, Paint, ShowMap, Stroke
 from ringlet.viewer.protocol.presets import Keep, ListPresets, Take, Try
 from ringlet.viewer.protocol.render import Render, StopRender
-from ringlet.viewer.protocol.review import KeepTake, ReviewMessage
+from ringlet.viewer.protocol.review import KeepTake, MakeShot, ReviewMessage
 
 MOST_TEXT = 1_800_000  # characters of a file
 
@@ -361,6 +361,7 @@ FromPage = Annotated[
     | MoveHead
     | Blow
     | KeepTake
+    | MakeShot
     | ReviewMessage,
     Field(discriminator="kind"),
 ]

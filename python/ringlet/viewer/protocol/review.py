@@ -54,6 +54,18 @@ class KeepTake(Message):
     picture: str = Field(max_length=MOST_PICTURE)
 
 
+class MakeShot(Message):
+    """Writes a shot with the motion of a take, opens it and starts it, compared with the take.
+
+    id:   of the snapshot
+    name: of the new files; empty for one that is not there yet
+    """
+
+    kind: Literal["make_shot"] = "make_shot"
+    id: EntryId
+    name: str = Field(default="", max_length=120)
+
+
 class EditSnapshot(Message):
     """Changes the note of a snapshot."""
 
