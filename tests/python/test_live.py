@@ -14,6 +14,7 @@ from small_example import RECIPE, write_example
 
 import ringlet
 from ringlet import Curves, Groom, Live, Material, Solver, Strands, Touch, UserError, _core
+from ringlet.live import live as live_module
 
 Array = NDArray[np.float64]
 
@@ -234,6 +235,29 @@ def test_clothes_go_with_the_trunk_and_push_hair(groom: Groom) -> None:
     for _ in range(72):
         live.step()
     assert live.positions == pytest.approx(np.asarray(groom.locks.points, np.float64), abs=1e-3)
+
+
+def test_friction_holds_hair_on_what_presses_on_it(groom: Groom, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A ball is lifted into the hair, and shifted to a side: without friction the lock slips off to the other."""
+    tips = Live(groom).rods[:, -1]
+    lowest = tips[:, 1].argmin()
+    ball = replace(groom.scalp, points=0.5 * groom.scalp.points + tips[lowest] - (0.0, 0.07, 0.0))
+
+    def slips(friction: float) -> float:
+        monkeypatch.setattr(live_module, "FRICTION", friction)
+        live = Live(groom, clothes=[ball])
+        for height in np.linspace(0.0, 0.05, 21):
+            live.trunk = turned(0.0, (0.0, float(height), 0.0))
+            live.step()
+        before = live.rods[lowest, -1]
+        for side in np.linspace(0.0, 0.02, 13)[1:]:
+            live.trunk = turned(0.0, (0.0, 0.05, float(side)))
+            live.step()
+        return float(np.linalg.norm(live.rods[lowest, -1] - before))
+
+    without = slips(0.0)
+    assert without > 8e-3
+    assert slips(0.3) < 0.5 * without
 
 
 def test_what_is_below_the_neck_goes_with_the_trunk_of_the_clip(tmp_path: Path) -> None:

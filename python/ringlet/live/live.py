@@ -25,7 +25,7 @@ from ringlet.shot.solver import Solver
 from ringlet.sim.core import Vector
 from ringlet.sim.cores import Cores
 from ringlet.sim.shot_strands import WANTED
-from ringlet.sim.strands import Planes
+from ringlet.sim.strands import Planes, Springs
 from ringlet.sim.worn import worn_factors
 
 Array = NDArray[np.float64]
@@ -41,6 +41,7 @@ SHARE, KEEP = 0.7, 0.9  # see src/ringlet/live/shared_velocities.h
 DISTANCES, BAND = 0.006, 0.02  # cell of the grids of distances to bodies, and where these are the closest [m]
 CLEARANCE = 5e-4  # of a coil from them [m]
 FIRM = 1000.0  # stiffness of a body, relative to the inertia of a vertex in a step
+FRICTION, STICK = 0.3, 5e-4  # Coulomb's μ of hair on them, and slip in a step below which it sticks [m]
 NEAR = 0.1  # from here on a body may be met in a step [m]
 
 ACROSS = 1.0, 0.3, 0.2  # some direction across the roots of rods
@@ -252,7 +253,9 @@ class Live:
         touch, cut_off = self._hand.begin()
         note = note or cut_off
         start, end = self._pose, self._head
-        held = _moved(self._rods.points, end)
+        held, planes = _moved(self._rods.points, end), self._planes(start, end, touch)
+        taken_along = self._taken_along(self._strands.positions, start, end)
+        springs = self._hand.springs(touch, self._touched(held)) if touch else None
         report = self._strands.step(
             held,
             self.dt,
@@ -260,11 +263,13 @@ class Live:
             wind=self._wind,
             forces=self._support @ end[:3, :3].T,
             solver=SOLVER,
-            planes=self._planes(start, end, touch),
-            springs=self._hand.springs(touch, self._touched(held)) if touch else None,
+            planes=planes,
+            springs=_either(springs, (taken_along, self._friction)),
         )
         self._hand.end()
         positions, velocities = self._strands.positions, self._strands.velocities
+        if planes is not None:
+            self._rub(planes, taken_along)
         self._grid.share(positions, self._strands.masses, self._held, start, end, self.dt, SHARE, KEEP, velocities)
         self._pose, self._trunk_pose = end, self._trunk_end
         if self._ease.size:
@@ -302,8 +307,7 @@ class Live:
         if not self._grids and touch is None:
             return None
         positions, planes = self._strands.positions, _core.BodyPlanes(len(self._held))
-        above = positions @ start[:3, 1] - start[:3, 3] @ start[:3, 1] > self._neck
-        of_trunk = self._trunk_pose, self._trunk_end
+        above, of_trunk = self._above_neck(positions, start), (self._trunk_pose, self._trunk_end)
         for grid, of_head in self._grids:
             if of_head:
                 planes.add(grid, start, end, positions, np.where(above, self._clearance, -np.inf))
@@ -315,10 +319,31 @@ class Live:
         stiffness = np.where(near, FIRM / self.dt**2 * self._strands.masses, 0.0)
         return planes.normals, planes.offsets, stiffness
 
+    def _above_neck(self, positions: Array, head: Array) -> NDArray[np.bool_]:
+        """Which places are with what moves with the head, shape (n,)."""
+        return positions @ head[:3, 1] - head[:3, 3] @ head[:3, 1] > self._neck
+
+    def _taken_along(self, positions: Array, start: Array, end: Array) -> Array:
+        """Where places would be at the end of a step, had they gone with the body that is there, shape (n, 3) [m]."""
+        of_head, of_trunk = (
+            _moved(positions, to @ np.linalg.inv(of)) for of, to in ((start, end), (self._trunk_pose, self._trunk_end))
+        )
+        return np.where(self._above_neck(positions, start)[:, None], of_head, of_trunk)
+
+    def _rub(self, planes: Planes, taken_along: Array) -> None:
+        """Coulomb friction on bodies in the next step: springs as stiff as it would have been on the slip of this."""
+        normals, offsets, stiffness = planes
+        positions = self._strands.positions
+        pressed = stiffness * np.maximum(offsets - np.einsum("ni,ni->n", normals, positions), 0.0)
+        slip = positions - taken_along
+        slip -= np.einsum("ni,ni->n", normals, slip)[:, None] * normals
+        self._friction = FRICTION * pressed / np.maximum(np.linalg.norm(slip, axis=1), STICK)
+
     def reset(self) -> None:
         """Puts the hair at rest as it is groomed, on the head where that is."""
         self._pose, self._trunk_pose = self._head, self._trunk_end
         self._strands.place(_moved(self._rods.points, self._pose))
+        self._friction = np.zeros(len(self._held))
         self._ease = np.zeros(0)
 
     @property
@@ -347,6 +372,7 @@ class Live:
         self._strands, self._support = self._hanging.strands(self._wire(), self._groomed_gravity)
         self._held = np.ascontiguousarray(self._strands.held, np.uint8)
         self._neck = neck(groom)[1]
+        self._friction = np.zeros(len(self._held))
 
     def _set_bodies(self, rods: Array) -> None:
         """Samples the distances to bodies around the hair; what is groomed closer than its coil is wide stays so."""
@@ -428,6 +454,7 @@ class Live:
         memory["velocities"][:] = 0.0
         self._strands.recall({name: np.ascontiguousarray(values) for name, values in memory.items()})
         self._pose, self._trunk_pose = self._head, self._trunk_end
+        self._friction[:] = 0.0
         return (
             f"the head was thrown {distance:.2g} m and {np.degrees(angle):.0f}° in a step of {self.dt:.3g} s; its hair "
             "was carried along"
@@ -447,6 +474,14 @@ def default_contact(groom: Groom) -> tuple[float, str]:
     """How firmly neighbours hold a lock by default [N/m²], and the style of the groom that says so."""
     style = "locs and braids" if STRAND_RADIUS in groom.locks.curve else "curls"
     return CONTACT[style], style
+
+
+def _either(first: Springs | None, second: Springs) -> Springs | None:
+    """Springs of vertices, the second where the first has none; None where there are none at all."""
+    if first is None:
+        return second if second[1].any() else None
+    other = first[1] == 0.0
+    return np.where(other[:, None], second[0], first[0]), np.where(other, second[1], first[1])
 
 
 def _moved(points: Array, transform: Array) -> Array:
