@@ -113,13 +113,15 @@ void bind_live(nb::module_ &module) {
         .def(
             "__init__",
             [](CarriedLocks *locks, const Array3<double> &points, const Array1<int> &vertex, const Array1<double> &weight,
-               const Array3<double> &rods, const Array1<int> &offsets, const Array3<double> &axes) {
+               const Array3<double> &rods, const Array1<int> &offsets, const Array3<double> &axes,
+               const Array1<double> &rises) {
                 new (locks) CarriedLocks(vectors<Vec3>(points), view(vertex), view(weight),
-                                         {vectors<Vec3>(rods), view(offsets)}, vectors<Vec3>(axes));
+                                         {vectors<Vec3>(rods), view(offsets)}, vectors<Vec3>(axes), view(rises));
             },
-            "points"_a, "vertex"_a, "weight"_a, "rods"_a, "offsets"_a, "axes"_a,
+            "points"_a, "vertex"_a, "weight"_a, "rods"_a, "offsets"_a, "axes"_a, "rises"_a,
             "points (n, 3) and rods (r, 3) as groomed [m]; of each point the vertex of a rod before it and the weight of the\n"
-            "one behind, (n,); a direction across the root of each rod, (count, 3).")
+            "one behind, (n,); a direction across the root of each rod, (count, 3), and its length by that of its lock, "
+            "(count,).")
         .def(
             "at",
             [](const CarriedLocks &locks, const Array3<double> &rods, const Matrix4 &head) {
@@ -140,10 +142,10 @@ void bind_live(nb::module_ &module) {
                 rows.reserve(12 * motions.size());
                 for (const VertexMotion &motion : motions)
                     for (int k = 0; k < 3; ++k) {
-                        for (int c = 0; c < 3; ++c) rows.push_back(motion.rotation(k, c));
+                        for (int c = 0; c < 3; ++c) rows.push_back(motion.linear(k, c));
                         rows.push_back(motion.shift[k]);
                     }
                 return to_numpy<double>(std::move(rows), {motions.size(), 3, 4});
             },
-            "rods"_a, "head"_a, "Motions [R t] of the vertices of rods since they were groomed, shape (r, 3, 4).");
+            "rods"_a, "head"_a, "Motions [A t] of the vertices of rods since they were groomed, shape (r, 3, 4).");
 }

@@ -141,8 +141,13 @@ void bind_strand(nb::module_ &module) {
         .def_prop_ro("twist_stiffness", column_view<&StrandModel::twist_stiffness>,
                      "c EI / l̄ of the edge that begins at each vertex [N m], shape (n,).")
         .def(
-            "place", [](Strands &self, Array3<double> positions) { self.place(vectors<Vec3>(positions)); }, "positions"_a,
-            "Puts the strands at rest at these positions [m], shape (n, 3), and forgets their history.")
+            "place",
+            [](Strands &self, Array3<double> positions, const std::optional<Array3<double>> &directors) {
+                self.place(vectors<Vec3>(positions), directors ? vectors<Vec3>(*directors) : View<Vec3>{});
+            },
+            "positions"_a, "directors"_a = nb::none(),
+            "Puts the strands at rest at these positions [m], shape (n, 3), and forgets their history. The directors of\n"
+            "their material frames there are found where none are given.")
         .def(
             "step",
             [](Strands &self, Array3<double> targets, Array3<double> forces, const SceneStep &settings,
@@ -169,7 +174,7 @@ void bind_strand(nb::module_ &module) {
             "memory", [](Strands &self) { return memory_of(self.state()); },
             "All that the next step depends on besides the model, as arrays by name.")
         .def(
-            "recall", [](Strands &self, const nb::dict &memory) { recall(self.state(), memory); }, "memory"_a,
+            "recall", [](Strands &self, const nb::dict &memory) { recall(self.any_state(), memory); }, "memory"_a,
             "Goes back to a memory of the same strands.")
         .def(
             "stabilising_stiffness",

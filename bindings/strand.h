@@ -20,9 +20,16 @@ public:
         return *state_;
     }
 
-    void place(View<Vec3> positions) {
-        state_ = make_strand_state(model, positions);
+    // directors: of the material frames; found by default
+    void place(View<Vec3> positions, View<Vec3> directors = {}) {
+        state_ = make_strand_state(model, positions, directors);
         rest_ = {};
+    }
+
+    // A state to be overwritten.
+    StrandState &any_state() {
+        if (!state_) place(rest_, rest_);
+        return *state_;
     }
 
 private:

@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 from ringlet.api.live import clothes_of
 from ringlet.data.rigid import rotation_vector
-from ringlet.live.rods import VERTICES
+from ringlet.live.rods import HELD, VERTICES
 from small_example import RECIPE, write_example
 
 import ringlet
@@ -116,12 +116,13 @@ def test_gravity_and_wind_act(groom: Groom) -> None:
 
 
 def test_hair_goes_on_from_where_it_is_to_another_groom(groom: Groom) -> None:
-    live, wider = swung(Live(groom)), widened(groom)
-    before = live.positions
+    live, other, wider = swung(Live(groom)), swung(Live(groom)), widened(groom)
+    before = live.rods
     live.groom = wider
-    assert live.positions == pytest.approx(before, abs=1e-9)
+    assert live.rods[:, HELD:] == pytest.approx(before[:, HELD:], abs=1e-9)
     live.step()
-    assert np.abs(live.positions - before).max() < 0.02
+    other.step()
+    assert np.abs(live.rods - other.rods).max() < 0.01  # curls twice as wide pull at their rods
     for _ in range(120):
         live.step()
     assert live.positions == pytest.approx(np.asarray(wider.locks.points) @ live.head[:3, :3].T, abs=2e-3)
@@ -134,6 +135,10 @@ def test_locks_that_are_new_begin_as_groomed(groom: Groom) -> None:
     assert live.positions.reshape(3, -1, 3) == pytest.approx(kept, abs=1e-9)
     live.groom = groom
     assert live.positions.reshape(len(groom.locks), -1, 3)[[0, 2, 5]] == pytest.approx(kept, abs=1e-9)
+    other = swung(Live(groom))
+    live.step()
+    other.step()
+    assert live.rods[[0, 2, 5]] == pytest.approx(other.rods[[0, 2, 5]], abs=1e-3)  # they have their twist and velocity
     grown = np.asarray(groom.locks.points).reshape(len(groom.locks), -1, 3)[1] @ live.head[:3, :3].T
     assert live.positions.reshape(len(groom.locks), -1, 3)[1] == pytest.approx(grown, abs=1e-9)
 
@@ -350,6 +355,22 @@ def test_a_lock_is_pulled_as_far_as_its_wire_reaches(groom: Groom) -> None:
     rod, length = live.rods[0], groom.locks.lengths()[0]
     assert 0.8 * length < np.linalg.norm(rod[-1] - rod[0]) < length
     assert is_back(live)
+
+
+def test_a_coil_that_is_drawn_out_gets_narrower_and_keeps_its_wire(groom: Groom) -> None:
+    live = Live(groom)
+    rod = live.rods[0]
+    chord = rod[-1] - rod[0]
+    pulled(live, tuple(0.3 * chord), 24)
+
+    def axis() -> float:
+        return float(np.linalg.norm(np.diff(live.rods[0], axis=0), axis=1).sum())
+
+    longer = axis() / np.linalg.norm(np.diff(rod, axis=0), axis=1).sum()
+    first = slice(0, groom.locks.offsets[1])
+    wire = np.linalg.norm(np.diff(live.positions[first], axis=0), axis=1).sum() / groom.locks.lengths()[0]
+    assert longer > 1.2
+    assert wire == pytest.approx(1.0, abs=0.05)
 
 
 def test_a_comb_takes_hair_along(groom: Groom) -> None:

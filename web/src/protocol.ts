@@ -978,6 +978,8 @@ export interface Rods {
   points: Float32Array;
   along: Float32Array;
   axis: Float32Array;
+  rise: Float32Array;
+  ids: Float64Array;
   carrier: Uint32Array;
 }
 
@@ -1006,6 +1008,8 @@ export interface LiveTake {
   points: Float32Array;
   along: Float32Array;
   axis: Float32Array;
+  rise: Float32Array;
+  ids: Float64Array;
   carrier: Uint32Array;
   steps: Int32Array;
   heads: Float32Array;

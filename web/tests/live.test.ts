@@ -11,13 +11,17 @@ import { open, type Page } from "./page";
 const VERTICES = 4;
 const TURN = new Matrix4().makeRotationY(0.4).setPosition(0.01, 0.02, 0.03);
 
-/** Bent rods, one for each lock of the page. */
-function rodsOf(count: number, key = 1): RodsMessage {
+const numbers = (count: number) => Array.from({ length: count }, (_, k) => k);
+
+/** Bent rods of locks that are straight, or half as long as their coils' wire. */
+function rodsOf(ids: ArrayLike<number>, key = 1, rise = 1): RodsMessage {
+  const count = ids.length;
   const points = Array.from({ length: count * VERTICES }, (_, i) => [0.02 * Math.sin(i), 0.1 - 0.02 * (i % VERTICES), 0.01 * Math.floor(i / VERTICES)]);
   return {
     ...{ kind: "rods", side: "a", key, pivot: [0, -1, 0], along: Float32Array.from([0, 0.1, 0.5, 1]) },
     ...{ points: Float32Array.from(points.flat()), carrier: Uint32Array.from({ length: count }, (_, k) => k) },
     axis: Float32Array.from(Array.from({ length: count }, () => [1, 0.3, 0.2]).flat()),
+    ...{ ids: Float64Array.from(ids), rise: new Float32Array(count).fill(rise) },
   };
 }
 
@@ -43,7 +47,7 @@ const headBody = (page: Page) => page.app.viewer.stage.bodies.get(0)!.surface("a
 async function moving(): Promise<[Page, RodsMessage]> {
   const page = await open();
   lives(page, true);
-  const rods = rodsOf(page.app.viewer.hair.a.locks!.ids.length);
+  const rods = rodsOf(page.app.viewer.hair.a.locks!.ids);
   page.hear(rods);
   page.hear(stepOf(rods, TURN));
   vi.advanceTimersByTime(50);
@@ -51,11 +55,24 @@ async function moving(): Promise<[Page, RodsMessage]> {
 }
 
 test("the motions of vertices are those of rods that move rigidly", () => {
-  const message = rodsOf(3);
+  const message = rodsOf(numbers(3));
   const motions = new Rods(message).motions(moved(message.points, TURN), TURN);
   const expected = TURN.clone().transpose().elements.slice(0, 12);
   for (let v = 0; v < 3 * VERTICES; v++)
     expected.forEach((value, k) => expect(motions[12 * v + k]).toBeCloseTo(value, 5));
+});
+
+test("a rod that is drawn out keeps the wire of its coil as long", () => {
+  const rise = 0.5;
+  const message = rodsOf([0], 1, rise);
+  message.points.set(numbers(VERTICES).flatMap((k) => [0, -0.02 * k, 0]));
+  const longer = new Matrix4().makeScale(1, 1.3, 1);
+  const motions = new Rods(message).motions(moved(message.points, longer), new Matrix4());
+  const across = Math.sqrt((1 - (1.3 * rise) ** 2) / (1 - rise ** 2));
+  const expected = [across, 0, 0, 0, 0, 1.3, 0, 0, 0, 0, across, 0];
+  for (let v = 0; v < VERTICES; v++) expected.forEach((value, k) => expect(motions[12 * v + k]).toBeCloseTo(value, 5));
+  const [radius, axial] = [across * Math.sqrt(1 - rise ** 2), 1.3 * rise];
+  expect(Math.hypot(radius, axial)).toBeCloseTo(1, 6);
 });
 
 test("the key L asks for live hair, and a line says what it is", async () => {
@@ -88,7 +105,7 @@ test("hair and head follow a step, and are exactly as they were when it is off",
   const before = { box: hair.a.box.clone(), points: hair.a.placed!.slice(), head: headBody(still).points.slice() };
   const [page] = await moving();
   const { a } = page.app.viewer.hair;
-  expect(a.motions!.length).toBe(12 * VERTICES * a.locks!.ids.length);
+  expect(a.motions!.length).toBe(12 * VERTICES * (a.locks!.ids.length + 1)); // and those of the head
   const expected = moved(before.head, TURN);
   headBody(page).points.forEach((value, i) => expect(value).toBeCloseTo(expected[i], 5));
   expect(a.box.equals(before.box)).toBe(false);
@@ -119,6 +136,22 @@ test("a groom that comes meanwhile is carried on", async () => {
   expect(a.motions).not.toBe(null);
   const expected = moved(page.first("body").points, TURN);
   headBody(page).points.forEach((value, i) => expect(value).toBeCloseTo(expected[i], 5));
+});
+
+test("of a groom with another number of locks those that stay move on, and new ones go with the head", async () => {
+  const [page, rods] = await moving();
+  const lags = TURN.clone().setPosition(0.05, -0.02, 0.01); // the hair, behind its head
+  page.hear({ ...stepOf(rods, lags), head: stepOf(rods, TURN).head });
+  const locks = page.first("locks");
+  const [count, size] = [locks.ids.length - 1, locks.offsets[1]];
+  const ids = Float64Array.from([...locks.ids.slice(1, count), 12345]); // two are gone, and the last is new
+  const [points, axis] = [locks.points.slice(0, 3 * size * count), locks.axis.slice(0, 3 * count)];
+  page.hear({ ...locks, draft: true, ids, points, axis, offsets: locks.offsets.slice(0, count + 1), marked: locks.marked.slice(0, count) });
+  vi.advanceTimersByTime(2000); // the picture, and the ease
+  const places = page.app.viewer.hair.a.seen!;
+  const first = 3 * size * (count - 1); // of the new one
+  moved(points, lags).forEach((value, i) => i < first && expect(places[i]).toBeCloseTo(value, 5));
+  moved(points, TURN).forEach((value, i) => i >= first && expect(places[i]).toBeCloseTo(value, 5));
 });
 
 test("what is cut off and steps that are left out are said", async () => {
@@ -205,7 +238,7 @@ test("a pointer that is gone, and a page that no longer leads, let go", async ()
 
 /** Locks of three points on their rods, carried by a motion. */
 function carried(count: number, motion: Matrix4, wide: number) {
-  const message = rodsOf(count);
+  const message = rodsOf(Array.from({ length: count }, (_, k) => 10 + k));
   const points = Float32Array.from({ length: 9 * count }, (_, i) => wide * Math.sin(1 + i));
   const rods = new Rods(message);
   const locks = { ids: Float64Array.from({ length: count }, (_, k) => 10 + k), offsets: Int32Array.from({ length: count + 1 }, (_, k) => 3 * k) };

@@ -11,11 +11,12 @@ import { open, type Page } from "./page";
 async function withHand(): Promise<Page> {
   const page = await open();
   page.hear({ kind: "live", on: true, fps: 24, goes_on: [], wind: "", contact: "" });
-  const count = page.app.viewer.hair.a.locks!.ids.length;
+  const { ids } = page.app.viewer.hair.a.locks!;
+  const count = ids.length;
   const points = Float32Array.from({ length: 6 * count }, (_, i) => (i % 6 === 4 ? -0.05 : 0)); // straight down
   const rods: Rods = {
     ...{ kind: "rods", side: "a", key: 1, pivot: [0, -1, 0], along: Float32Array.from([0, 1]), points },
-    ...{ carrier: Uint32Array.from({ length: count }, (_, k) => k), axis: Float32Array.from({ length: 3 * count }, (_, i) => (i % 3 ? 0 : 1)) },
+    ...{ ids, rise: new Float32Array(count).fill(1), carrier: Uint32Array.from({ length: count }, (_, k) => k), axis: Float32Array.from({ length: 3 * count }, (_, i) => (i % 3 ? 0 : 1)) },
   };
   page.hear(rods);
   const still: LiveStep = { kind: "live_step", side: "a", key: 1, step: 0, head: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0], trunk: [0, 0, 0], note: "", points, worn: new Float32Array() };

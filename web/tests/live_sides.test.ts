@@ -11,11 +11,13 @@ const compared = (side: Side, name = "as it was", take = ""): Compared => ({ kin
 
 /** Straight rods of a side, one for each lock. */
 function rodsOf(page: Page, side: Side, key: number): Rods {
-  const count = page.app.viewer.hair.a.locks!.ids.length;
+  const { ids } = page.app.viewer.hair.a.locks!;
+  const count = ids.length;
   return {
     ...{ kind: "rods", side, key, pivot: [0, -1, 0], along: Float32Array.from([0, 1]) },
     ...{ points: Float32Array.from({ length: 6 * count }, (_, i) => (i % 6 === 4 ? -0.05 : 0)), carrier: Uint32Array.from({ length: count }, (_, k) => k) },
     axis: Float32Array.from({ length: 3 * count }, (_, i) => (i % 3 ? 0 : 1)),
+    ...{ ids, rise: new Float32Array(count).fill(1) },
   };
 }
 

@@ -13,13 +13,15 @@ const UNIT = 1e-4;
 const FPS = 24;
 
 /** A head that goes to the right by a centimetre a step, and hair that lags by a millimetre a step. */
-function takeOf(count: number, more: Partial<LiveTake> = {}): LiveTake {
+function takeOf(ids: Float64Array, more: Partial<LiveTake> = {}): LiveTake {
+  const count = ids.length;
   const points = Array.from({ length: count * VERTICES }, (_, i) => [0.02 * Math.sin(i), 0.1 - 0.02 * (i % VERTICES), 0.01 * Math.floor(i / VERTICES)]).flat();
   const heads = STEPS.map((step) => [1, 0, 0, 0.01 * step, 0, 1, 0, 0, 0, 0, 1, 0]).flat();
   const moved = STEPS.map((step) => points.map((_, i) => (i % 3 ? 0 : -10 * step))).flat();
   return {
     ...{ kind: "live_take", side: "b", id: "one", fps: FPS, first: null, pivot: [0, -1, 0], unit: UNIT },
     ...{ points: Float32Array.from(points), along: Float32Array.from([0, 0.1, 0.5, 1]), carrier: Uint32Array.from({ length: count }, (_, k) => k) },
+    ...{ ids, rise: new Float32Array(count).fill(1) },
     ...{ axis: Float32Array.from(Array.from({ length: count }, () => [1, 0.3, 0.2]).flat()), steps: Int32Array.from(STEPS) },
     ...{ heads: Float32Array.from(heads), trunks: new Float32Array(3 * STEPS.length), moved: Int16Array.from(moved), worn: new Int16Array() },
     ...more,
@@ -35,7 +37,7 @@ async function playing(more: Partial<LiveTake> = {}, file: "small.recipe" | "sma
   page.hear({ ...compared(""), side: "a", name: "now" });
   page.hear(compared("one"));
   for (const kind of ["hairs", "locks"] as const) page.hear({ ...page.first(kind), side: "b" });
-  const take = takeOf(hair.a.locks!.ids.length, more);
+  const take = takeOf(hair.a.locks!.ids, more);
   page.hear(take);
   return [page, take];
 }
@@ -45,7 +47,7 @@ const shift = (page: Page) => page.app.viewer.hair.b.motions?.[3] ?? null;
 const snapshot = (page: Page, seconds: number): Snapshot => ({ id: "one", author: "", note: "", time: "2026-01-01T10:00:00", look: page.app.look.state, seconds });
 
 test("a step of a take is where it was seen, and a step that was left out is the one before", () => {
-  const take = new Take(takeOf(2));
+  const take = new Take(takeOf(new Float64Array(2)));
   expect(take.length).toBe(6);
   const { points, pose } = take.at(2);
   expect(pose.head).toEqual(new Matrix4().setPosition(Math.fround(0.02), 0, 0));

@@ -173,8 +173,8 @@ class Curves:
             raise UserError(
                 f"{what}: curve {self.ids[short[0]]} has {self.counts[short[0]]} point(s); must have at least 2"
             )
-        if not (near := (np.abs(self.points) <= limits.FARTHEST).all(axis=1)).all():
-            row = int(np.flatnonzero(~near)[0])
+        if not np.abs(self.points).max() <= limits.FARTHEST:
+            row = int(np.flatnonzero(~(np.abs(self.points) <= limits.FARTHEST).all(axis=1))[0])
             curve = self._curve_of(row)
             raise UserError(
                 f"{what}: curve {self.ids[curve]}, point {row - self.offsets[curve]} is {self.points[row]}; "

@@ -13,7 +13,7 @@ from ringlet.sim.strands import Strands
 
 Array = NDArray[np.float64]
 
-ROUNDS = 3  # to find a rest shape, on which the weight depends a little
+ROUNDS = 2  # to find a rest shape, on which the weight depends a little
 LEFT = 0.5  # of its stiffness without load, that a rod keeps in every direction
 FALLS = 4.0  # how soon the share of a rod that is too soft falls to 0
 STIFFEST = 64.0  # times that a rod would have to be stiffer, at most, to carry all of its weight
@@ -30,29 +30,30 @@ class HangingRods:
 
     def __init__(self, rods: Rods, wire: Wire, gravity: Vector) -> None:
         self.rods = rods
-        self._frames = rods.strands(wire).directors.copy()
-        self._groomed = measure_strains(rods.curves, rods.points, self._frames)
+        self._as_groomed = wire, rods.strands(wire)
+        self.frames = self._as_groomed[1].directors.copy()
+        self._groomed = measure_strains(rods.curves, rods.points, self.frames)
         self._least = np.zeros(len(rods.curves))  # EI by density with which a rod carries its weight
-        strands, _ = self.strands(wire, gravity)
-        strands.place(rods.points)
+        strands, _ = self.strands(wire, gravity, 1)
+        strands.place(rods.points, self.frames)
         needed = strands.stabilising_stiffness(np.full(len(self._least), LEFT), STIFFEST)
         self._least = needed * wire.bend / wire.density
 
-    def strands(self, wire: Wire, gravity: Vector) -> tuple[Strands, Array]:
+    def strands(self, wire: Wire, gravity: Vector, rounds: int = ROUNDS) -> tuple[Strands, Array]:
         """The rods of a wire, and what carries their weight besides themselves under gravity [m/s²], as groomed: [N],
         shape (n, 3)."""
         stiffness = wire.bend / wire.density
         # What is a little unstable stands, until it is pushed; then it would lie elsewhere.
         shares = np.clip(FALLS * (stiffness / np.maximum(self._least, 1e-30) - 1.0) + 1.0, 0.0, 1.0)
-        strands = self.rods.strands(wire)
-        for _ in range(ROUNDS):
+        strands = self._as_groomed[1] if wire is self._as_groomed[0] else self.rods.strands(wire)
+        for _ in range(rounds):
             strain = self._strain(strands, wire, gravity)
             bent = _most(np.linalg.norm(strain.bend, axis=1)) / MOST_BENT
             pressed = _most(-strain.length / np.maximum(self._groomed.length, 1e-30)) / MOST_PRESSED
             shares = np.minimum(shares, 1.0 / np.maximum(np.maximum(bent, pressed), 1e-30))
             strain = RodStrains(*(_rows(shares, of) * of for of in (strain.length, strain.bend, strain.twist)))
             strain.length[:] *= self._groomed.length / np.maximum(self._groomed.length + strain.length, 1e-30)
-            rest = shape_of_strains(self.rods.curves, self._groomed.plus(strain, -1.0), self._frames)[0]
+            rest = shape_of_strains(self.rods.curves, self._groomed.plus(strain, -1.0), self.frames)[0]
             strands = self.rods.strands(wire, rest)
         support = -np.repeat(1.0 - shares, VERTICES)[:, None] * np.outer(strands.masses, gravity)
         return strands, support
@@ -62,10 +63,10 @@ class HangingRods:
 
         That of length is of the groomed one.
         """
-        curves, number = self.rods.curves, np.arange(len(self._frames)) % VERTICES
+        curves, number = self.rods.curves, np.arange(len(self.frames)) % VERTICES
         loads = strands.loads(gravity)
         loads[strands.held] = 0.0
-        forces = internal_forces(curves, self.rods.points, self._frames, loads, HELD)
+        forces = internal_forces(curves, self.rods.points, self.frames, loads, HELD)
         pull = np.repeat(self.rods.coil(wire).axial_stretch, VERTICES)
         _, bend, twist = (np.where(stiffness > 0.0, stiffness, np.inf) for stiffness in strands.stiffness)
         free, behind = number >= HELD - 1, number >= HELD - 2

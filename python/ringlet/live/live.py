@@ -18,14 +18,14 @@ from ringlet.data.mesh import Mesh
 from ringlet.data.rigid import rotation_vector
 from ringlet.live.hanging import HangingRods
 from ringlet.live.neck import neck
-from ringlet.live.rods import VERTICES, Rods, Wire, places, vertex_places
+from ringlet.live.rods import HELD, VERTICES, Rods, Wire, places, vertex_places
 from ringlet.live.touch import PRESSED, Hand, Touch, TouchedRods
 from ringlet.shot.material import Material
 from ringlet.shot.solver import Solver
 from ringlet.sim.core import Vector
 from ringlet.sim.cores import Cores
 from ringlet.sim.shot_strands import WANTED
-from ringlet.sim.strands import Planes, Springs
+from ringlet.sim.strands import Planes, Springs, Strands
 from ringlet.sim.worn import worn_factors
 
 Array = NDArray[np.float64]
@@ -46,7 +46,6 @@ NEAR = 0.1  # from here on a body may be met in a step [m]
 
 ACROSS = 1.0, 0.3, 0.2  # some direction across the roots of rods
 
-EASE = 0.1  # time in which a coil goes over to another groom, to 1/e [s]
 FARTHEST, FASTEST = 0.3, np.pi / 3.0  # of the head in a step [m], [rad]: beyond, hair is carried along rigidly
 NOT_RIGID = 1e-3  # deviation of a rotation from one
 
@@ -101,7 +100,6 @@ class Live:
         self._trunk: Array | None = None
         self._bodies, self._clothes = (groom.scalp,) if bodies is None else tuple(bodies), tuple(clothes)
         self._grids: list[tuple[_core.DistanceGrid, bool]] = []
-        self._ease = np.zeros(0)
         self._hand = Hand()
         self._set_groom(groom)
         self.reset()
@@ -184,17 +182,17 @@ class Live:
 
     @property
     def groom(self) -> Groom:
-        """The groom. From another one, hair goes on from where it is towards its new shape; locks that are not in both,
-        by their ids, begin as groomed."""
+        """The groom. From another one, rods go on from where they are towards their new shape, with the new coils.
+
+        Locks that are not in both, by their ids, begin as groomed.
+        """
         return self._cores.whole
 
     @groom.setter
     def groom(self, groom: Groom) -> None:
-        whole, shown, ids = self._cores.whole.locks, self.positions, self._rods.curves.ids
-        rods, velocities = self.rods, self._strands.velocities.reshape(-1, VERTICES, 3).copy()
+        before, strands = self._hanging, self._strands
         self._set_groom(groom)
-        self._go_on(ids, rods, velocities)
-        self._ease_from(whole.ids, shown, whole.counts)
+        self._go_on(before, strands)
 
     @property
     def rods(self) -> Array:
@@ -222,8 +220,15 @@ class Live:
         return np.tile(ACROSS, (len(self._rods.curves), 1))
 
     @property
+    def rise(self) -> Array:
+        """The length of each rod by that of its lock, as groomed, shape (rods,)."""
+        return self._rods.rise
+
+    @property
     def motions(self) -> Array:
-        """The rigid motions [R t] of the vertices of rods since they were groomed, shape (rods, vertices, 3, 4).
+        """The motions [A t] of the vertices of rods since they were groomed, shape (rods, vertices, 3, 4).
+
+        A is a rotation where a rod is as long as groomed. A coil that is drawn out gets narrower, its wire as long.
 
         A point of a lock is at ``(1 - w) M_a(x) + w M_b(x)``, with the motions M of the vertices before and behind it,
         the weight w of ``places`` and its place x in the groom.
@@ -239,8 +244,7 @@ class Live:
     @property
     def positions(self) -> Array:
         """The points of all locks [m], shape (n, 3)."""
-        points = self._carried.at(self._strands.positions, self._pose)
-        return points + self._ease @ self._pose[:3, :3].T if self._ease.size else points
+        return self._carried.at(self._strands.positions, self._pose)
 
     def step(self) -> str:
         """Advances by 1 / fps [s], in which the head goes to ``head``.
@@ -272,10 +276,6 @@ class Live:
             self._rub(planes, taken_along)
         self._grid.share(positions, self._strands.masses, self._held, start, end, self.dt, SHARE, KEEP, velocities)
         self._pose, self._trunk_pose = end, self._trunk_end
-        if self._ease.size:
-            self._ease *= np.exp(-self.dt / EASE)
-            if np.abs(self._ease).max() < 1e-6:
-                self._ease = np.zeros(0)
         lost = report["nan"] > 0.0
         if lost.any():
             self._begin_again(lost)
@@ -342,9 +342,8 @@ class Live:
     def reset(self) -> None:
         """Puts the hair at rest as it is groomed, on the head where that is."""
         self._pose, self._trunk_pose = self._head, self._trunk_end
-        self._strands.place(_moved(self._rods.points, self._pose))
+        self._strands.place(*self._at_rest())
         self._friction = np.zeros(len(self._held))
-        self._ease = np.zeros(0)
 
     @property
     def _trunk_end(self) -> Array:
@@ -354,22 +353,32 @@ class Live:
     def _set_groom(self, groom: Groom) -> None:
         """Takes over a groom; its hair is to be placed then."""
         groom.locks.check("live: locks").check_strands("live: locks")
-        self._cores, self._ease = Cores.of(groom), np.zeros(0)
+        self._cores = Cores.of(groom)
         self._rods = Rods.of(self._cores.groom.locks)
         rods, whole = self._rods.points, groom.locks
-        counts, simulated = whole.counts, self._cores.simulated
-        by_count = {int(count): places(int(count)) for count in np.unique(counts)}
-        first = VERTICES * np.repeat(simulated, counts)
-        self._vertex = (first + np.concatenate([by_count[count][0] for count in counts])).astype(np.int32)
-        self._weight = np.concatenate([by_count[count][1] for count in counts])
+        counts = whole.counts
+        self._vertex = (VERTICES * np.repeat(self._cores.simulated, counts)).astype(np.int32)
+        self._weight = np.zeros(len(whole.points))
+        for count in np.unique(counts):
+            rows = whole.point_rows(alike := counts == count)
+            vertex, weight = places(int(count))
+            self._vertex[rows] += np.tile(vertex, alike.sum())
+            self._weight[rows] = np.tile(weight, alike.sum())
         self._carried = _core.CarriedLocks(
-            np.array(whole.points, np.float64), self._vertex, self._weight, rods, self._rods.curves.offsets, self.axes
+            np.array(whole.points, np.float64),
+            self._vertex,
+            self._weight,
+            rods,
+            self._rods.curves.offsets,
+            self.axes,
+            self.rise,
         )
         self._grid = _core.VelocityGrid(rods.min(axis=0) - MARGIN, rods.max(axis=0) + MARGIN, CELL)
         self._crowding = self._rods.crowding()
         self._set_bodies(rods)
-        self._hanging = HangingRods(self._rods, self._wire(), self._groomed_gravity)
-        self._strands, self._support = self._hanging.strands(self._wire(), self._groomed_gravity)
+        wire = self._wire()
+        self._hanging = HangingRods(self._rods, wire, self._groomed_gravity)
+        self._strands, self._support = self._hanging.strands(wire, self._groomed_gravity)
         self._held = np.ascontiguousarray(self._strands.held, np.uint8)
         self._neck = neck(groom)[1]
         self._friction = np.zeros(len(self._held))
@@ -403,7 +412,7 @@ class Live:
             if wanted in locks.curve:
                 multiply(name, np.repeat(locks.curve[wanted], locks.counts))
         # A beam of length H on a foundation k is held as by the bend stiffness k H⁴.
-        added = self._contact * self._crowding * self._rods.curves.lengths() ** 4 / self._rods.rise
+        added = self._contact * self._crowding * self._rods.lengths**4 / self._rods.rise
         return Wire.of(locks, self._material, factors, added)
 
     def _set_strands(self) -> None:
@@ -412,32 +421,25 @@ class Live:
         self._strands, self._support = self._hanging.strands(self._wire(), self._groomed_gravity)
         self._strands.recall(memory)
 
-    def _go_on(self, ids: NDArray[np.int64], rods: Array, velocities: Array) -> None:
-        """Puts the rods of locks that were there before where they were; held vertices are with the new groom."""
-        _, old, new = np.intersect1d(ids, self._rods.curves.ids, return_indices=True)
-        at = _moved(self._rods.points, self._pose).reshape(-1, VERTICES, 3)
-        free = ~np.asarray(self._strands.held).reshape(-1, VERTICES)[0]
-        at[np.ix_(new, np.flatnonzero(free))] = rods[np.ix_(old, np.flatnonzero(free))]
-        self._strands.place(at.reshape(-1, 3))
-        self._strands.velocities.reshape(-1, VERTICES, 3)[new] = velocities[old]
+    def _at_rest(self) -> tuple[Array, Array]:
+        """Positions [m] and directors of rods that are at rest as groomed, where the head is."""
+        return _moved(self._rods.points, self._pose), self._hanging.frames @ self._pose[:3, :3].T
 
-    def _ease_from(self, ids: NDArray[np.int64], shown: Array, counts: NDArray[np.integer]) -> None:
-        """Coils of locks that were there before begin where they were shown, and go over in time."""
-        locks = self._cores.whole.locks
-        starts, row_of = np.concatenate([[0], np.cumsum(counts)]), {int(id): row for row, id in enumerate(ids)}
-        before = self.positions
-        now = before.copy()
-        for row, id in enumerate(locks.ids):
-            old = row_of.get(int(id))
-            if old is None:
-                continue
-            points = shown[starts[old] : starts[old + 1]]
-            begin, end = locks.offsets[row : row + 2]
-            if len(points) != end - begin:
-                u, v = np.linspace(0.0, 1.0, end - begin), np.linspace(0.0, 1.0, len(points))
-                points = np.stack([np.interp(u, v, points[:, k]) for k in range(3)], axis=1)
-            now[begin:end] = points
-        self._ease = (now - before) @ self._pose[:3, :3]
+    def _go_on(self, before: HangingRods, strands: Strands) -> None:
+        """Puts the rods of locks that were there before where they were; held vertices are with the new groom.
+
+        Directors have turned since they were groomed as the frames of their edges had before.
+        """
+        _, old, new = np.intersect1d(before.rods.curves.ids, self._rods.curves.ids, return_indices=True)
+        positions, directors = self._at_rest()
+        _of_rods(positions)[new, HELD:] = _of_rods(strands.positions)[old, HELD:]
+        groomed = _edge_frames(before.rods.points, before.frames, old)
+        turns = _edge_frames(strands.positions, strands.directors, old) @ groomed.transpose(0, 1, 3, 2)
+        edges = new, slice(HELD - 1, -1)
+        _of_rods(directors)[edges] = (turns @ _of_rods(self._hanging.frames)[edges][..., None])[..., 0]
+        _of_rods(directors)[edges] = _edge_frames(positions, directors, new)[..., 1]
+        self._strands.place(positions, directors)
+        _of_rods(self._strands.velocities)[new] = _of_rods(strands.velocities)[old]
 
     def _catch_up(self) -> str:
         """Carries hair rigidly along with a head that is thrown; returns a sentence about that."""
@@ -462,11 +464,11 @@ class Live:
 
     def _begin_again(self, lost: NDArray[np.bool_]) -> None:
         """Puts some rods at rest as they are groomed."""
-        memory = self._strands.memory
-        self._strands.place(_moved(self._rods.points, self._pose))
+        memory, chosen = self._strands.memory, np.repeat(lost, VERTICES)
+        self._strands.place(*self._at_rest())
         for name, groomed in self._strands.memory.items():
-            chosen = lost if len(groomed) == len(lost) else np.repeat(lost, VERTICES)
-            memory[name][chosen] = groomed[chosen]
+            of_rods = chosen if len(groomed) == len(chosen) else lost
+            memory[name][of_rods] = groomed[of_rods]
         self._strands.recall(memory)
 
 
@@ -482,6 +484,21 @@ def _either(first: Springs | None, second: Springs) -> Springs | None:
         return second if second[1].any() else None
     other = first[1] == 0.0
     return np.where(other[:, None], second[0], first[0]), np.where(other, second[1], first[1])
+
+
+def _of_rods(values: Array) -> Array:
+    """Values at all vertices, (n, 3), as those of each rod: shape (rods, vertices, 3)."""
+    return values.reshape(-1, VERTICES, 3)
+
+
+def _edge_frames(points: Array, directors: Array, rods: NDArray[np.integer]) -> Array:
+    """The tangent, the director and the axis across both of the free edges of some rods, shape (rods, edges, 3, 3)."""
+    tangents = np.diff(_of_rods(points)[rods, HELD - 1 :], axis=1)
+    tangents /= np.linalg.norm(tangents, axis=2, keepdims=True)
+    across = _of_rods(directors)[rods, HELD - 1 : -1]
+    across = across - (across * tangents).sum(axis=2, keepdims=True) * tangents
+    across /= np.linalg.norm(across, axis=2, keepdims=True)
+    return np.stack([tangents, across, np.cross(tangents, across)], axis=-1)
 
 
 def _moved(points: Array, transform: Array) -> Array:

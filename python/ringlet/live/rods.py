@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache, cached_property
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -72,10 +73,10 @@ class Wire:
         lock, counts = np.repeat(np.arange(len(locks)), locks.counts), locks.counts
 
         def mean(values: Array) -> Array:
-            return np.bincount(lock, values, len(locks)) / counts
+            return np.bincount(lock, values, len(locks)) / counts if values.ndim else np.full(len(locks), values)
 
         def factor(name: str) -> Array:
-            return np.asarray(factors.get(name, np.ones(len(lock))), np.float64)
+            return np.asarray(factors.get(name, 1.0), np.float64)
 
         def stiffness(values: Array) -> Array:
             return 1.0 / mean(1.0 / np.maximum(values, 1e-12))
@@ -120,18 +121,25 @@ class Rods:
         """The rod on the centre line of each lock: a polynomial of the place along it, by least squares."""
         count = len(locks)
         vertices, radius, length = np.zeros((count, VERTICES, 3)), np.zeros(count), np.zeros(count)
-        for points in np.unique(locks.counts):
+        of_locks = np.asarray(locks.points, np.float64)
+        for points in (counts := np.unique(locks.counts)):
             rows = np.flatnonzero(locks.counts == points)
-            shape = np.asarray(locks.points, np.float64)[locks.point_rows(rows)].reshape(len(rows), points, 3)
+            of_points = of_locks if len(counts) == 1 else of_locks[locks.point_rows(rows)]
+            shape = of_points.reshape(len(rows), points, 3)
             fit, at_points, at_vertices = _bases(int(points))
-            coefficients = np.einsum("kp,lpi->lki", fit, shape)
-            axis = np.einsum("pk,lki->lpi", at_points, coefficients)
-            vertices[rows] = np.einsum("vk,lki->lvi", at_vertices, coefficients)
-            radius[rows] = np.sqrt(((shape - axis) ** 2).sum(axis=2).mean(axis=1))
+            coefficients = fit @ shape
+            axis = at_points @ coefficients
+            vertices[rows] = at_vertices @ coefficients
+            radius[rows] = np.sqrt(np.einsum("lpi,lpi->l", away := shape - axis, away) / points)
             length[rows] = np.linalg.norm(np.diff(vertices[rows], axis=1), axis=2).sum(axis=1)
         offsets = VERTICES * np.arange(count + 1, dtype=np.int32)
         curves = Curves(vertices.reshape(-1, 3), offsets, locks.ids)
         return cls(curves, radius, np.clip(length / locks.lengths(), LEAST_RISE, 1.0))
+
+    @cached_property
+    def lengths(self) -> Array:
+        """Of the rods as groomed [m], shape (count,)."""
+        return np.asarray(self.curves.lengths(), np.float64)
 
     def coil(self, wire: Wire) -> HelicalSpring:
         """The coils of a wire about them."""
@@ -152,7 +160,7 @@ class Rods:
         """
         curves = self.curves if rest is None else self.curves.with_points(rest)
         coil, bend = self.coil(wire), np.asarray(self.coil(wire).axial_bend)
-        density = wire.density / self.rise * self.curves.lengths() / curves.lengths()
+        density = wire.density / self.rise * self.lengths / curves.lengths()
         factors = {
             "radius": np.sqrt(density),
             "stretch": coil.axial_stretch / density,
@@ -186,6 +194,7 @@ def vertex_places() -> Array:
     return np.concatenate([held[:-1], np.linspace(held[-1], 1.0, VERTICES - HELD + 1)]).astype(np.float64)
 
 
+@cache
 def _bases(points: int) -> tuple[Array, Array, Array]:
     """Of locks with so many points: the fit of coefficients, and polynomials at points and at vertices."""
     degree = min(DEGREE, points - 1)

@@ -94,9 +94,13 @@ class Strands:
         stretch, bend, twist, shapes (n,)."""
         return self._core.stretch_stiffness, self._core.bend_stiffness, self._core.twist_stiffness
 
-    def place(self, positions: NDArray[np.floating]) -> None:
-        """Puts the strands at rest at other positions [m], shape (n, 3), and keeps their rest shape."""
-        self._core.place(np.ascontiguousarray(positions, np.float64))
+    def place(self, positions: NDArray[np.floating], directors: NDArray[np.floating] | None = None) -> None:
+        """Puts the strands at rest at other positions [m], shape (n, 3), and keeps their rest shape.
+
+        directors: of their material frames there, shape (n, 3); by default those of least energy are found
+        """
+        frames = None if directors is None else np.ascontiguousarray(directors, np.float64)
+        self._core.place(np.ascontiguousarray(positions, np.float64), frames)
 
     @property
     def memory(self) -> dict[str, NDArray[Any]]:

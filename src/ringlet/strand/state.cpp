@@ -46,7 +46,7 @@ std::vector<double> relax_frames(const StrandModel &model, View<Vec3> positions,
 
 } // namespace
 
-StrandState make_strand_state(const StrandModel &model, View<Vec3> positions) {
+StrandState make_strand_state(const StrandModel &model, View<Vec3> positions, View<Vec3> directors) {
     if (int(positions.size()) != model.vertex_count()) throw std::invalid_argument("strands: positions do not fit the model");
     StrandState state;
     const size_t n = positions.size();
@@ -64,6 +64,11 @@ StrandState make_strand_state(const StrandModel &model, View<Vec3> positions) {
     for (int s = 0; s < model.strand_count(); ++s)
         for (int i = model.offsets[s] + 1; i + 2 < model.offsets[s + 1]; ++i)
             state.twist[i] = std::remainder(now.dihedral[i] - model.rest_dihedral[i], 2 * std::numbers::pi);
+    if (!directors.empty()) {
+        if (directors.size() != n) throw std::invalid_argument("strands: directors do not fit the model");
+        state.directors.assign(directors.begin(), directors.end());
+        return state;
+    }
     set_untwisted_directors(model, positions, now, state);
 
     // The relaxed frames depend on the initial ones: directors along the corners' normals are tried too, and each strand keeps

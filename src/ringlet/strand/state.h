@@ -21,8 +21,8 @@ struct StrandState {
     std::vector<double> last_dt;                     // per strand [s]; 0 where the last step is none of BDF-2
 };
 
-// At rest at the given positions, with their normals and twist and with relaxed material frames.
-StrandState make_strand_state(const StrandModel &model, View<Vec3> positions);
+// At rest at the given positions, with their normals and twist. `directors`: of the material frames; relaxed ones by default.
+StrandState make_strand_state(const StrandModel &model, View<Vec3> positions, View<Vec3> directors = {});
 
 // Least factor, at most `most`, on the stiffness of bend and twist with which each strand is stable at rest in this state. The
 // fraction `left` of its stiffness remains in reserve. Infinite where `most` is not enough (rest/stability.h).

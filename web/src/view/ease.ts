@@ -70,7 +70,7 @@ export function easeFrom(before: Pick<Locks, "ids" | "offsets">, places: Float32
 function each({ locks, rods, motions }: Carried, does: (at: number, motion: Matrix4) => void): void {
   const { along } = rods.message;
   const motion = new Matrix4();
-  const { first } = rods;
+  const first = rods.first(locks.ids);
   for (let lock = 0; lock < locks.ids.length; lock++) {
     const [from, to] = [locks.offsets[lock], locks.offsets[lock + 1]];
     let v = 0;

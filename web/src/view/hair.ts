@@ -238,9 +238,8 @@ export class Hair {
 
   /** Lets rods carry the hair from where it is placed; nothing: it is where it is placed. */
   carryBy(rods: Rods | null, points: Float32Array = new Float32Array(), head?: Matrix4): void {
-    const fits = rods !== null && head !== undefined && rods.message.carrier.length === this.locks?.ids.length;
-    if (!fits && !this.carrying) return;
-    const carrying = fits ? { rods, points, head } : null;
+    const carrying = rods && head ? { rods, points, head } : null;
+    if (!carrying && !this.carrying) return;
     const follow = () => {
       this.carrying = carrying;
       this.follow();
@@ -256,14 +255,14 @@ export class Hair {
     const { carrying, carry, table, locks } = this;
     this.box.copy(this.placedBox);
     if (!carry || !table || !locks) return;
-    if (!carrying || carrying.rods.message.carrier.length !== locks.ids.length) {
+    if (!carrying) {
       this.motions = null;
       carry.setMotions(new Float32Array(), null);
       return;
     }
     const { rods, points, head } = carrying;
     this.motions = rods.motions(points, head);
-    rods.first.forEach((vertex, lock) => (table.places[4 * lock + 3] = vertex));
+    rods.first(locks.ids).forEach((vertex, lock) => (table.places[4 * lock + 3] = vertex));
     carry.setPlaces(table);
     carry.setMotions(rods.message.along, this.motions);
     this.box.copy(rods.box(points, this.placedBox));

@@ -9,8 +9,8 @@ export class Take {
   readonly rods: Rods;
 
   constructor(readonly message: LiveTake) {
-    const { pivot, points, along, axis, carrier } = message;
-    this.rods = new Rods({ kind: "rods", side: "a", key: 0, pivot, points, along, axis, carrier });
+    const { pivot, points, along, axis, rise, ids, carrier } = message;
+    this.rods = new Rods({ kind: "rods", side: "a", key: 0, pivot, points, along, axis, rise, ids, carrier });
   }
 
   /** How many steps it takes, with those that were left out. */

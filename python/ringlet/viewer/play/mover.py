@@ -187,6 +187,8 @@ def rods_message(key: int, mover: Mover, side: Side = "a") -> bytes:
         points=live.groomed_rods - origin,
         along=live.vertex_places,
         axis=live.axes,
+        rise=live.rise,
+        ids=live.groom.locks.ids,
         carrier=live.carriers,
     )
 

@@ -83,14 +83,22 @@ class Rods(Message):
     pivot: about which the head turns on its neck [m]
 
     ``points`` are their vertices, ``along`` the places of these on a lock, from 0 at its root to 1; ``axis`` is a
-    direction across the root of each rod, and ``carrier`` the rod of each lock.
+    direction across the root of each rod, and ``rise`` its length by that of its lock. ``ids`` are those of the locks,
+    and ``carrier`` the rod of each.
     """
 
     kind: Literal["rods"] = "rods"
     side: Side = "a"
     key: int
     pivot: Point
-    arrays: ClassVar[dict[str, str]] = {"points": "f4", "along": "f4", "axis": "f4", "carrier": "u4"}
+    arrays: ClassVar[dict[str, str]] = {
+        "points": "f4",
+        "along": "f4",
+        "axis": "f4",
+        "rise": "f4",
+        "ids": "f8",
+        "carrier": "u4",
+    }
 
 
 class LiveStep(Message):
@@ -125,9 +133,9 @@ class LiveTake(Message):
     pivot: about which the head turns on its neck [m]
     unit:  length of a part, in which ``moved`` and ``worn`` are [m]
 
-    ``points``, ``along``, ``axis`` and ``carrier`` are as in ``Rods``. Of each of the ``steps``, by their numbers,
-    ``heads`` has 12 numbers and ``trunks`` 3, as in ``LiveStep``. ``moved`` is the way of each vertex from where it was
-    groomed, ``worn`` the points of what hair wears, both in the frame of the head.
+    ``points``, ``along``, ``axis``, ``rise``, ``ids`` and ``carrier`` are as in ``Rods``. Of each of the ``steps``, by
+    their numbers, ``heads`` has 12 numbers and ``trunks`` 3, as in ``LiveStep``. ``moved`` is the way of each vertex
+    from where it was groomed, ``worn`` the points of what hair wears, both in the frame of the head.
     """
 
     kind: Literal["live_take"] = "live_take"
@@ -138,7 +146,8 @@ class LiveTake(Message):
     pivot: Point
     unit: float
     arrays: ClassVar[dict[str, str]] = {
-        **dict.fromkeys(("points", "along", "axis"), "f4"),
+        **dict.fromkeys(("points", "along", "axis", "rise"), "f4"),
+        "ids": "f8",
         "carrier": "u4",
         "steps": "i4",
         **dict.fromkeys(("heads", "trunks"), "f4"),

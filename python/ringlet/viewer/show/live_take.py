@@ -34,7 +34,7 @@ class LiveTake:
     fps:     steps a second
     origin:  of places, shape (3,)
     pivot:   about which the head turns on its neck, shape (3,)
-    points, along, axis, carrier: rods as groomed, as in ``protocol.Rods``
+    points, along, axis, rise, ids, carrier: rods as groomed, as in ``protocol.Rods``
     steps:   numbers of the steps, from 0; those that were left out are missing; shape (n,)
     heads:   motion of the head since it was groomed, the rows of a 3 × 4 matrix, shape (n, 12)
     trunks:  shift of what is below the neck, shape (n, 3)
@@ -51,6 +51,8 @@ class LiveTake:
     points: NDArray[np.float32]
     along: NDArray[np.float32]
     axis: NDArray[np.float32]
+    rise: NDArray[np.float32]
+    ids: Array
     carrier: NDArray[np.uint32]
     steps: NDArray[np.int32]
     heads: Array
@@ -89,6 +91,8 @@ class LiveTake:
             points=groomed["points"],
             along=groomed["along"],
             axis=groomed["axis"],
+            rise=groomed["rise"],
+            ids=groomed["ids"],
             carrier=groomed["carrier"],
             steps=numbers[first:] - numbers[first],
             heads=heads[first:],
@@ -113,7 +117,7 @@ class LiveTake:
 
     def message(self, side: protocol.Side, id: str, first: int | None) -> bytes:
         """Message that lets pages play it. id: of its snapshot; first: the frame of the open shot that it begins at"""
-        names = ("points", "along", "axis", "carrier", "steps", "heads", "trunks", "moved", "worn")
+        names = ("points", "along", "axis", "rise", "ids", "carrier", "steps", "heads", "trunks", "moved", "worn")
         head = protocol.LiveTake(
             side=side, id=id, fps=float(self.fps), first=first, pivot=tuple(self.pivot.tolist()), unit=float(self.unit)
         )
@@ -154,7 +158,8 @@ class LiveTake:
             and len(shapes["worn"]) == len(shapes["before"]) == 2
             and shapes["worn"][0] == count
             and shapes["before"][1] == 15
-            and self.axis.size == 3 * rods
+            and self.axis.size == 3 * rods == 3 * self.rise.size
+            and self.ids.shape == self.carrier.shape
             and (self.carrier < rods).all()
             and count > 0
             and (np.diff(self.steps, prepend=-1) > 0).all()
