@@ -73,3 +73,19 @@ def test_a_gradient_of_density_keeps_the_hairs_that_are_asked_for_where_it_is_on
         "[guides]\ncount = 30\n[locks]\ncount = 500\n[hairs]\ndensity = { value = 60, map = 'all' }\n"
     )
     assert hairs_per_cm2(made) == pytest.approx(60, rel=0.05)
+
+
+def test_sections_end_where_the_map_of_their_mask_does_and_leave_nothing_bare_before():
+    text = (
+        "[gradients.front]\ntoward = [0, 0, 1]\nstart = -0.01\nend = 0.01\n[guides]\ncount = 40\n"
+        "[locks]\n[locks.sections]\nsize = 4\ngap = 0\nstrands = 2\nmask = { map = 'front' }\n"
+        "[hairs]\ndensity = 40\n"
+    )
+    made = groom(text)
+    hairs = make_hairs(made).curves
+    assert made.locks.roots[:, 2].min() > 0.0
+    near = hairs.roots[hairs.roots[:, 1] > 0.02]
+    assert -0.001 < near[:, 2].min() < 0.003
+    bare = [near[np.abs(near[:, 0] - x) < 0.01, 2].min() for x in (-0.06, -0.03, 0.0, 0.03, 0.06)]
+    assert max(bare) < 0.006
+    assert len(hairs) == pytest.approx(40.0 * 0.5 * 2e4 * np.pi * 0.09**2, rel=0.06)

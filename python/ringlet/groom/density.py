@@ -25,8 +25,12 @@ def hair_count(groom: Groom) -> int:
 
 
 def hairs_per_cm2(groom: Groom) -> float:
-    """Mean number of hairs per cm² of the region that carries hair."""
-    return hair_count(groom) / (PER_CM2 * region_area(groom.scalp, hair_region(groom)))
+    """Mean number of hairs per cm² of the scalp that the groom covers; of its whole region where hairs have no density.
+
+    Of several grooms that are joined, per cm² of the whole region.
+    """
+    covered = 0.0 if groom.grooms else float(groom_areas(groom).sum())
+    return hair_count(groom) / (PER_CM2 * (covered or region_area(groom.scalp, hair_region(groom))))
 
 
 def lock_counts(groom: Groom, areas: NDArray[np.float64]) -> NDArray[np.int64]:

@@ -186,11 +186,13 @@ class Scalp:
 
     def grows(self, places: NDArray, density: str | None, what: str) -> NDArray[np.bool_]:
         """Whether a painted density is over 0 at places (n, 3) [m] of the region, shape (n,); everywhere for None."""
-        if density is None:
-            return np.ones(len(places), np.bool_)
+        return np.ones(len(places), np.bool_) if density is None else self.painted_at(places, density, what) > 0.0
+
+    def painted_at(self, places: NDArray, name: str, what: str) -> NDArray[np.float64]:
+        """Values of a painted map at places (n, 3) [m] of the region, shape (n,)."""
         flat = np.ascontiguousarray(places, np.float64)
         triangle, barycentric, _ = _core.bind_roots(self.points, self.triangles, flat, self.region)
-        return self._painted(density, triangle, barycentric, what) > 0.0
+        return self._painted(name, triangle, barycentric, what)
 
     def _painted(self, name: str, triangle: NDArray, barycentric: NDArray, what: str) -> NDArray[np.float64]:
         """Values of a painted map at samples, shape (n,)."""

@@ -30,8 +30,8 @@ NEARER = 3  # tries of strands to grow: at their place, and nearer to the middle
 STRANDS_APART = 0.2  # distance of a section's strands from its middle at the scalp, in sizes of the section
 
 # Further curve attributes of locks in sections: which of its strands; place in the section, 0 to 1 each; distance
-# from the section's border [m].
-STRAND, U, V, EDGE = "strand", "u", "v", "edge"
+# from the section's border [m]; of strands the area whose hair they carry, part lines included [m²], 0 for others.
+STRAND, U, V, EDGE, AREA = "strand", "u", "v", "edge", "area"
 
 
 class Sections(Section):
@@ -66,7 +66,9 @@ class Sections(Section):
         "sections, locks grow only where `count` or `spacing` says how many",
     )
     mask: Annotated[Mask, Quantity("", 0.0, 1.0)] = Field(
-        default=Mask(), description="where there are sections: those with a weight over a half at their middle"
+        default=Mask(),
+        description="where there are sections: those with a weight over a half at their middle. They end where its "
+        "`map` is half",
     )
 
     @model_validator(mode="after")
@@ -78,7 +80,7 @@ class Sections(Section):
     def divide(
         self, scalp: Scalp, seed: int, helper: Callable[[Names, str], Curves], density: str | None = None
     ) -> Division:
-        """Divides the region of the scalp, as far as a painted density is over 0.
+        """Divides the region of the scalp, as far as a painted density is over 0 and the map of the mask over a half.
 
         helper: returns the helper curves of a name for a setting
         """
@@ -89,11 +91,16 @@ class Sections(Section):
         places = scalp.positions(triangle, barycentric)
 
         def grows(places: NDArray) -> NDArray[np.bool_]:
-            return scalp.grows(places, density, "locks.density")
+            grow = scalp.grows(places, density, "locks.density")
+            if self.mask.map is not None:
+                over = scalp.painted_at(places, self.mask.map, "locks.sections.mask.map") > 0.5
+                grow &= over != self.mask.invert
+            return grow
 
         painted = grows(places)
         if not painted.any():
-            raise UserError(f"locks.density '{density}' is 0 all over {scalp.where}; paint where hair is to grow")
+            what = f"locks.density '{density}'" if self.mask.map is None else f"locks.sections.mask '{self.mask.map}'"
+            raise UserError(f"{what} is 0 all over {scalp.where}; paint where hair is to grow")
         places, triangle, barycentric = places[painted], triangle[painted], barycentric[painted]
         drawn = None
         if self.part_lines is not None:
@@ -108,7 +115,8 @@ class Sections(Section):
         bound = {"root_triangle": triangle[nearest], "root_barycentric": barycentric[nearest]}
         roots = Curves(places[nearest], np.arange(len(ids) + 1, dtype=np.int32), ids.astype(np.int64), bound)
         chosen = self.mask.weights(roots, scalp.mesh, Random(seed, "locks/sections"), "locks.sections.mask")[:, 0] > 0.5
-        return Division(self, chart, seed, merged, roots, chosen, grows, drawn)
+        areas = np.bincount(section, minlength=len(ids)) * (scalp.area / len(painted))
+        return Division(self, chart, seed, merged, roots, areas, chosen, grows, drawn)
 
     def _cells(self, chart: Chart, places: NDArray, seed: int, drawn: DrawnPartLines | None) -> Cells:
         """The pattern's cells at places (n, 3) [m]."""
@@ -210,6 +218,7 @@ class Division:
     """A scalp divided into sections.
 
     roots:  the middles of the sections, as curves of one point named by the sections' ids
+    areas:  of the sections with their half of the part lines [m²], shape (sections,)
     chosen: whether the mask has the section, shape (sections,)
     grows:  whether hair grows at places (n, 3) [m] by the painted density, shape (n,)
     """
@@ -219,6 +228,7 @@ class Division:
     seed: int
     merged: Merged
     roots: Curves
+    areas: NDArray[np.float64]
     chosen: NDArray[np.bool_]
     grows: Callable[[NDArray], NDArray[np.bool_]]
     drawn: DrawnPartLines | None = None
@@ -263,12 +273,18 @@ class Division:
         flat = np.ascontiguousarray(places.reshape(-1, 3))
         triangle, barycentric, _ = _core.bind_roots(scalp.points, scalp.triangles, flat, region)
         section = np.repeat(roots.ids, strands)
+        area = np.repeat(self.areas[np.searchsorted(self.roots.ids, roots.ids)] / max(strands, 1), strands)
         strand = np.tile(np.arange(strands), len(roots))
         at = self.at(scalp.positions(triangle, barycentric))
         return (
             triangle,
             barycentric,
-            {**at, SECTION: section.astype(np.int32), STRAND: strand.astype(np.int32)},
+            {
+                **at,
+                SECTION: section.astype(np.int32),
+                STRAND: strand.astype(np.int32),
+                AREA: area.astype(np.float32),
+            },
         )
 
 

@@ -11,7 +11,7 @@ from ringlet import _core
 from ringlet.data.curves import Curves
 from ringlet.data.groom import SECTION
 from ringlet.groom.scalp import Scalp, tangents
-from ringlet.groom.sections import EDGE, Division
+from ringlet.groom.sections import AREA, EDGE, Division
 
 DIRECTIONS = 48
 FRONT = 0.12  # part of a row's hairs that grow at its front
@@ -97,7 +97,13 @@ def row_reaches(
 
 
 def share_areas(locks: Curves) -> NDArray[np.float64]:
-    """Areas of the shares of locks [m²], shape (locks,); 0 for locks of no section."""
+    """Areas whose hair the strands of sections carry [m²], shape (locks,); 0 for locks of no section.
+
+    Part lines are bare since their hair is combed into the strands on both sides. Grooms of files without the
+    attribute ``AREA`` have the areas of the shares alone.
+    """
+    if AREA in locks.curve:
+        return np.asarray(locks.curve[AREA], np.float64)
     if REACH not in locks.curve:
         return np.zeros(len(locks))
     reach = locks.curve[REACH].astype(np.float64)

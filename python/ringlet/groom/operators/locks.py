@@ -17,7 +17,7 @@ from ringlet.data.groom import ADOPTED, SECTION
 from ringlet.data.quantities import Quantity, refuse
 from ringlet.groom.hairline import Hairline
 from ringlet.groom.operators.operator import Context, Operator, arc_lengths, packed, unit
-from ringlet.groom.sections import STRAND, Sections
+from ringlet.groom.sections import AREA, STRAND, Sections
 from ringlet.groom.shares import DIRECTIONS, REACH, reaches
 
 STRAND_IDS, IDS_PER_SECTION = 10**13, 100  # id of a strand: 10¹³ + section · 100 + number in the section
@@ -117,6 +117,7 @@ class Locks(Operator):
             loose[:] = False
         at = {name: values[loose] for name, values in at.items()} | {STRAND: np.full(loose.sum(), -1, np.int32)}
         at[REACH] = np.zeros((loose.sum(), DIRECTIONS), np.float32)
+        at[AREA] = np.zeros(loose.sum(), np.float32)
         strand_triangle, strand_barycentric, strand = division.strand_roots(scalp)
         strand[REACH] = reaches(division, scalp, strand_triangle, strand_barycentric, strand[SECTION])
         strand_ids = STRAND_IDS + IDS_PER_SECTION * strand[SECTION].astype(np.int64) + strand[STRAND]
