@@ -233,3 +233,16 @@ def test_hairs_follow_an_edited_lock_and_its_own_settings(recipe, tmp_path):
 def test_a_setting_of_an_unknown_stage_is_refused_with_a_suggestion(recipe):
     with pytest.raises(UserError, match=r"hair.width is no setting of an operator.*hairs"):
         ringlet.edit_lock(recipe, int(locks(recipe).ids[0]), settings={"hair.width": "1 mm"})
+
+
+@pytest.mark.parametrize("factor", [0.4, 1.5])
+def test_an_edit_gives_one_lock_another_length(recipe, factor):
+    before = ringlet.build_groom(recipe)
+    lock = int(before.locks.ids[5])
+    recipe.with_name("a.edits.toml").write_text(
+        f'ringlet = 2\n[[edit]]\nlock = {lock}\nstage = "shape"\nlength = {factor}\n'
+    )
+    after = ringlet.build_groom(recipe)
+    lengths = [groom.shapes.lengths()[5] for groom in (before, after)]
+    assert lengths[1] == pytest.approx(factor * lengths[0], rel=0.01)
+    others_stay(before.locks, after.locks, lock)

@@ -216,3 +216,26 @@ def run(*arguments):
     result = CliRunner().invoke(app, [str(argument) for argument in arguments])
     assert result.exit_code in (0, 1), result.output
     return result.stdout
+
+
+def test_a_variant_gives_values_relative_to_those_of_its_base(folder):
+    text = (
+        'extends = "base.toml"\nguides.length = "130 %"\nlocks.count = 9\ncurl.width = { value = "50 %", vary = 0.4 }\n'
+        'shape."scraggle 2".magnitude = "200 %"\nguides.part_line.falloff = "10 %"\n'
+    )
+    base, longer = read_recipe(folder / "base.toml"), read_recipe(variant(folder, text, "longer.toml"))
+    assert longer.guides.length.value == pytest.approx(1.3 * base.guides.length.value)
+    assert longer.guides.length.vary == base.guides.length.vary
+    assert (longer.curl.width.value, longer.curl.width.vary) == (pytest.approx(0.005), 0.4)
+    assert longer.shape[2].magnitude.value == pytest.approx(0.002)
+    twice = read_recipe(variant(folder, 'extends = "longer.toml"\nguides.length = "50 %"\n', "twice.toml"))
+    assert twice.guides.length.value == pytest.approx(0.65 * base.guides.length.value)
+    units = variant(folder, 'extends = "base.toml"\nguides.length = "8 mm"\n', "units.toml")
+    scaled = read_recipe(variant(folder, f'extends = "{units.name}"\nguides.length = "25 %"\n', "scaled.toml"))
+    assert scaled.guides.length.value == pytest.approx(0.002)
+
+
+@pytest.mark.parametrize("setting", ["guides.lift", "scalp.region"])
+def test_a_relative_value_without_a_base_is_refused(folder, setting):
+    with pytest.raises(UserError, match=f"{setting} is '130 %', but what it extends has .*; give it a"):
+        read_recipe(variant(folder, f'extends = "base.toml"\n{setting} = "130 %"\n'))

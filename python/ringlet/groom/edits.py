@@ -13,7 +13,7 @@ from ringlet.data import limits
 from ringlet.data.curves import Curves
 from ringlet.data.quantities import Quantity, Section, refuse
 from ringlet.groom.helpers import Place
-from ringlet.groom.operators.operator import Context, Operator, grid, packed, with_grid
+from ringlet.groom.operators.operator import Context, Operator, arc_lengths, grid, on_splines, packed, with_grid
 
 Value = float | int | str
 
@@ -42,6 +42,10 @@ class Edit(Section):
     set: dict[str, Value] = Field(
         default={}, description='settings of this lock alone, such as `"curl.width" = "8 mm"`'
     )
+    length: Annotated[float | None, Quantity("", 0.01, 100.0)] = Field(
+        default=None,
+        description="factor on the length of the shape: the lock is cut, or goes on straight. For the stage `shape`",
+    )
     curve: list[Place] | None = Field(
         default=None,
         description="points from the root that replace the lock, in tangent, bitangent and normal of the root",
@@ -53,8 +57,10 @@ class Edit(Section):
     def _not_empty(self) -> Edit:
         if self.curve is not None and len(self.curve) < 2:
             raise refuse(f"has a curve of {len(self.curve)} point(s); give at least 2")
-        if not (self.set or self.curve or self.offsets or self.move):
-            raise refuse("changes nothing; give it 'set', 'curve', 'offsets' or 'move', or take it away")
+        if not (self.set or self.length or self.curve or self.offsets or self.move):
+            raise refuse("changes nothing; give it 'set', 'length', 'curve', 'offsets' or 'move', or take it away")
+        if self.length is not None and self.stage != "shape":
+            raise refuse("has a length, which counts before the lock is curled; give it stage = 'shape'")
         return self
 
 
@@ -75,6 +81,9 @@ class Edits(Operator):
             root = points[row, 0].copy()
             if edit.curve is not None:
                 points[row] = root + resampled(np.array(edit.curve), len(u)) @ frames[row].T
+            if edit.length is not None:
+                one = points[row : row + 1]
+                points[row] = on_splines(one, edit.length * arc_lengths(one))[0]
             by = np.zeros((len(u), 3))
             if edit.offsets:
                 by += resampled(np.array([(0.0, 0.0, 0.0), *edit.offsets[1:]]), len(u), even=False)

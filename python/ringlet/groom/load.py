@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from pathlib import Path
 from typing import Any
@@ -18,6 +19,8 @@ APPEND = "append"  # key of a variant's operators that follow those of its base
 MAY_BE_FALSE = ("guides.whorl",)  # settings whose value may be `false`, which then does not remove them
 LOCK_TABLES = ("curl", "hairs", "color")  # tables, operators aside, whose settings single locks may have
 EMPTY = f"ringlet = {FORMAT}\n"  # a file of edits without edits
+RELATIVE = re.compile(r"\s*(\d+(?:\.\d+)?)\s*%\s*")  # of the value of the base
+MEASURED = re.compile(r"\s*(-?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?)(\s*/?[a-z]+2?\s*)")
 EDITS = ("edit", "sculpt")  # tables of a file of edits: edits of locks, edits of guides
 
 
@@ -145,7 +148,8 @@ def _file_name(data: dict[str, Any], setting: str, path: Path) -> str:
 
 
 def _merged(base: dict[str, Any], changes: dict[str, Any], where: str, place: str) -> dict[str, Any]:
-    """Merges changes into a table: tables merge, ``false`` removes an entry, any other value replaces it."""
+    """Merges changes into a table: tables merge, ``false`` removes an entry, ``"130 %"`` scales a value, any other
+    replaces it."""
     result = dict(base)
     for key, value in changes.items():
         old = base.get(key)
@@ -156,13 +160,34 @@ def _merged(base: dict[str, Any], changes: dict[str, Any], where: str, place: st
             result[key] = old + value
         elif value is False and key in base and not isinstance(old, bool) and name not in MAY_BE_FALSE:
             del result[key]
+        elif isinstance(value, str) and (share := RELATIVE.fullmatch(value)):
+            result[key] = _scaled(old, 0.01 * float(share[1]), value, f"{where}: {place}.{key}".replace(": .", ": "))
         elif isinstance(value, dict) and isinstance(old, dict) and not ("file" in value) > ("file" in old):
             result[key] = _merged(old, value, where, f"{place}.{key}".removeprefix("."))
-        elif isinstance(value, dict) and key in base and not isinstance(old, dict | list) and "value" not in value:
-            result[key] = {"value": old, **value}  # promotes a plain value to a table
+        elif isinstance(value, dict) and key in base and not isinstance(old, dict | list) and _is_relative(value):
+            plain = {"value": old}  # promotes a plain value to a table
+            result[key] = _merged(plain, value, where, f"{place}.{key}".removeprefix("."))
         else:
             result[key] = value
     return result
+
+
+def _is_relative(value: dict[str, Any]) -> bool:
+    """Whether a table of a varied value goes on from the value of the base."""
+    given = value.get("value")
+    return given is None or (isinstance(given, str) and RELATIVE.fullmatch(given) is not None)
+
+
+def _scaled(old: Any, factor: float, said: str, what: str) -> Any:
+    """A value of a base times a factor: a number, a text such as ``5 mm``, or a table with one of them."""
+    if isinstance(old, dict) and "value" in old:
+        return {**old, "value": _scaled(old["value"], factor, said, what)}
+    if isinstance(old, int | float) and not isinstance(old, bool):
+        return factor * old
+    if isinstance(old, str) and (measured := MEASURED.fullmatch(old)):
+        return f"{factor * float(measured[1]):.12g}{measured[2]}"
+    given = "has no value for it" if old is None else f"has {shown(old)}"
+    raise UserError(f"{what} is '{said}', but what it extends {given}; give it a value of its own")
 
 
 def _merged_shape(base: list[Any], changes: dict[str, Any], where: str) -> list[Any]:

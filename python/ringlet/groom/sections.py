@@ -30,7 +30,7 @@ NEARER = 3  # tries of strands to grow: at their place, and nearer to the middle
 STRANDS_APART = 0.2  # distance of a section's strands from its middle at the scalp, in sizes of the section
 
 # Further curve attributes of locks in sections: which of its strands; place in the section, 0 to 1 each; distance
-# from the section's border [m]; of strands the area whose hair they carry, part lines included [m²], 0 for others.
+# from the section's border [m]. ``AREA`` is that whose hair a strand carries, part lines included [m²]; 0 for others.
 STRAND, U, V, EDGE, AREA = "strand", "u", "v", "edge", "area"
 
 

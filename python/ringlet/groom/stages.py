@@ -145,7 +145,7 @@ def _edits(recipe: Recipe, stage: str, name: str) -> Stages:
 
 def _moves(edit: Edit) -> bool:
     """Whether an edit moves points; settings alone are in the operators already."""
-    return bool(edit.curve or edit.offsets or edit.move)
+    return bool(edit.length or edit.curve or edit.offsets or edit.move)
 
 
 def key_of(before: str, *content: bytes) -> str:
