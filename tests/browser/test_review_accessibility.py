@@ -40,6 +40,19 @@ def test_a_button_without_a_name_is_found(opened: Any):
     assert any(found.startswith("button-name") for found in checked.found["nameless"])
 
 
+def test_all_of_the_page_is_in_landmarks_and_the_view_is_a_few_tabs_away(opened: Any):
+    review: Review = opened(viewport={"width": 1280, "height": 800})
+    Checked(review)
+    found = review.page.evaluate("axe.run({ runOnly: ['region', 'landmark-unique'] })")
+    assert [node["html"][:80] for rule in found["violations"] for node in rule["nodes"]] == []
+    review.get("document.activeElement.blur()")
+    for _ in range(3):
+        review.page.keyboard.press("Tab")
+    assert review.get("document.activeElement.textContent") == "To the view"
+    review.page.keyboard.press("Enter")
+    assert review.get("document.activeElement.closest('.viewbar') !== null")
+
+
 def test_every_stage_of_a_recipe_is_accessible(opened: Any):
     review: Review = opened(viewport={"width": 1280, "height": 800})
     checked = Checked(review)

@@ -26,7 +26,7 @@ LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 # seconds. Noise darkens it, as the tone curve is concave: percentile 95 of the dark look is 3 % lower with 32 samples
 # than with 160.
 LOOKS = {
-    "dark": ("4C", 300, 220, "black", 64),
+    "dark": ("4C", 300, 300, "black", 64),
     "brown": ("3B", 300, 90, "brown", 32),
     "fair": ("1", 300, 40, "blond", 32),
 }

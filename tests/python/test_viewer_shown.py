@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import threading
 from pathlib import Path
 
 import numpy as np
+import pytest
 from pages import page, read, serving
 from ringlet.data.pigment import curve_reflectance
+from ringlet.viewer.show import display_groom
 from small_example import write_head
 from wear import SCARF, write_wear
 
@@ -19,6 +22,28 @@ def test_the_first_hairs_are_spread_over_all_locks(folder: Path):
         hairs = one.receive("hairs")
         assert sorted(hairs["lock"][:8]) == list(range(8))
         assert np.all(hairs["offset"][:16] == 0.0) and np.any(hairs["offset"][16:] != 0.0)
+
+
+def test_the_head_is_shown_before_its_groom_is_made_and_once(folder: Path, monkeypatch: pytest.MonkeyPatch):
+    seen, made = threading.Event(), display_groom.make_groom
+
+    def make_groom(*inputs, **named):
+        assert seen.wait(30)
+        return made(*inputs, **named)
+
+    monkeypatch.setattr(display_groom, "make_groom", make_groom)
+    with serving(folder) as client, page(client) as one:
+        subject, body = one.receive("subject"), one.receive("body")
+        seen.set()
+        one.receive("numbers", draft=False)
+        roots = one.latest("locks")["points"].reshape(8, -1, 3)[:, 0]
+        low, high = np.array(subject["low"]), np.array(subject["high"])
+        assert np.all(roots > low - 1e-3) and np.all(roots < high + 1e-3)
+        assert np.ptp(body["points"].reshape(-1, 3), axis=0).max() >= (high - low).max()
+        one.send(kind="set", changes=[[["curl", "width"], 1.5]], gesture=1)
+        one.receive("numbers", draft=False)
+        bodies = [message["index"] for message in one.received if message["kind"] == "body"]
+        assert bodies == sorted(set(bodies))
 
 
 def test_a_shot_streams_its_frames_and_reruns_from_a_frame(folder: Path):

@@ -33,6 +33,7 @@ import { Tray } from "./panel/tray";
 import { Viewbar } from "./panel/viewbar";
 import { Sheets } from "./panel/sheets"; // the last of the panels, since its style places the others on a phone
 import type { SharePage, Welcome } from "./protocol";
+import { skips } from "./panel/skips";
 import { Unsaved } from "./unsaved";
 import { keep } from "./view/capture";
 import { Viewer } from "./view/viewer";
@@ -111,7 +112,9 @@ export class App {
     const stack = new Stack(model, () => presets.show(true));
     const left = h("div", { class: "left" }, stack.element, presets.element, this.lock.element, ...this.tools.elements);
     const settings = new Settings(model).element;
-    root.append(bar, left, settings, viewbar.element, compare.element, this.tray.element, lens.element);
+    root.prepend(skips([["stages", left], ["settings", settings], ["view", viewbar.element]]));
+    root.append(bar, left, settings);
+    root.append(h("nav", { "aria-label": "View" }, viewbar.element), compare.element, this.tray.element, lens.element);
     root.append(this.timeline.element, this.status.element, this.notices.element, this.problems.element, sheets.element);
     const below = [viewbar.element, this.timeline.element, this.status.element, sheets.element];
     const panels = [...left.children, settings] as HTMLElement[];
@@ -172,6 +175,7 @@ export class App {
   /** The picture shows what comes before panels hear of it. */
   private fillPicture(): void {
     const { model, viewer } = this;
+    model.hear("subject", ({ low, high }) => viewer.await(low, high));
     model.hear("body", (message) => viewer.stage.setBody(message));
     model.hear("hairs", (message) => viewer.stage.setHairs(message));
     model.hear("colors", (message) => viewer.stage.setColors(message));

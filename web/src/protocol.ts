@@ -663,6 +663,13 @@ export interface Document {
   changes: Change[];
 }
 
+/** Bounds of the skin that hair is to grow on [m]: known before the groom, so that the picture shows them first. */
+export interface Subject {
+  kind: "subject";
+  low: [number, number, number];
+  high: [number, number, number];
+}
+
 /** A mesh of the scene. made_of: its material: skin, eye, cloth or matte. */
 export interface Body {
   kind: "body";
@@ -1083,6 +1090,7 @@ export type FromServer =
   | Role
   | Files
   | Document
+  | Subject
   | Body
   | Locks
   | Guides

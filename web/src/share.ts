@@ -47,12 +47,16 @@ class SharedLook {
     root.append(
       h("header", { class: "about" }, h("h1", {}, name), this.status),
       h(
-        "div",
-        { class: "tools", role: "toolbar", "aria-label": "View" },
-        this.turn,
-        this.lights(),
-        iconButton("frame", "Frame all hair (F)", () => this.viewer.frame()),
-        iconButton("sun", "Dark or light theme", () => this.setTheme(this.theme === "dark" ? "light" : "dark")),
+        "nav",
+        { "aria-label": "View" },
+        h(
+          "div",
+          { class: "tools", role: "toolbar", "aria-label": "View" },
+          this.turn,
+          this.lights(),
+          iconButton("frame", "Frame all hair (F)", () => this.viewer.frame()),
+          iconButton("sun", "Dark or light theme", () => this.setTheme(this.theme === "dark" ? "light" : "dark")),
+        ),
       ),
     );
     root.append(this.shelf());

@@ -124,6 +124,7 @@ export class Settings {
   /** Shows the fields of first sight, or all, with what the file says now. */
   private sift(): void {
     this.element.classList.toggle("searching", this.search.on);
+    this.element.classList.toggle("few", this.first);
     const all = this.opened.has(this.stage) || this.fields.length <= this.few + 1;
     let shown = 0;
     this.fields.forEach((field, k) => {

@@ -20,6 +20,7 @@ import { Stage } from "./stage";
 
 const REST_AFTER = 180; // time without a movement after which the picture rests [ms]
 const TURN = 0.6; // of the turntable [radians per second]
+const FACE = 0.3; // below the skin that hair grows on, as a part of its height
 const VIEW: [number, number] = [34, 7]; // azimuth and elevation of the first view [degrees]
 
 /** The camera, and what it is set to: as looks are stored. */
@@ -64,6 +65,8 @@ export class Viewer {
   /** Whether a picture was drawn since the last change. */
   private fresh = false;
   private moved = 0;
+  /** Whether the first picture of something is still to come. */
+  private awaited = true;
   /** Whether the graphics card is at work: what is next waits for it. */
   private drawing = false;
   /** The rest of a picture that is drawn in slices. */
@@ -111,7 +114,9 @@ export class Viewer {
   setLocks(message: Locks): void {
     this.stage.setLocks(message);
     if (message.draft) this.move();
-    if (!this.placed && message.side === "a") this.frame();
+    if (this.placed || message.side !== "a") return;
+    this.frame();
+    this.soon();
   }
 
   /** Moves all bodies on one side, whose points follow one another; nothing: to where they rest. */
@@ -172,6 +177,16 @@ export class Viewer {
   get cameraState(): CameraState {
     const { place, focalLength } = this.view;
     return { camera: place, focal_length: Number(focalLength.toFixed(2)), light_turn: this.stage.lights.turn };
+  }
+
+  /** Looks at the skin that hair is to grow on, by its bounds, and at the face below it; until hair is there. */
+  await(low: number[], high: number[]): void {
+    if (this.placed) return;
+    const down = FACE * (high[1]! - low[1]!);
+    const ends = [[low[0], low[1]! - down, low[2]], high] as number[][];
+    const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((k) => [0, 1, 2].map((axis) => ends[(k >> axis) & 1]![axis]!));
+    this.view.frame([new Float32Array(corners.flat())], ...VIEW, this.clear);
+    this.soon();
   }
 
   /** Puts the camera before the subject so that all of it is in the picture. */
@@ -245,6 +260,12 @@ export class Viewer {
   /** Something in the picture moves. */
   private moves(): void {
     this.moved = performance.now();
+    this.invalidate();
+  }
+
+  /** What is new is seen as soon as it can be, in less detail at first. */
+  private soon(): void {
+    this.awaited = true;
     this.invalidate();
   }
 
@@ -362,7 +383,8 @@ export class Viewer {
       view.orbit((passed / 1000) * TURN, 0);
       this.moved = now;
     } else this.turned = 0;
-    const moving = now - this.moved < REST_AFTER;
+    const moving = this.awaited || now - this.moved < REST_AFTER;
+    this.awaited = false;
     if (moving) this.film.drawings = 0;
     painter.scale(moving && !this.turntable && !painter.composed ? pace.scale : 1); // movies have their full size
     [pace.resolved, pace.hairs] = [painter.resolved(view), Math.max(this.hair.a.count, 1)];

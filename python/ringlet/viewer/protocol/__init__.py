@@ -52,6 +52,7 @@ from ringlet.viewer.protocol.groom import (
     Measured,
     Names,
     Numbers,
+    Subject,
 )
 from ringlet.viewer.protocol.lights import Lamp, Rig
 from ringlet.viewer.protocol.live import Blow, GoLive, HoldHead, Live, LiveStep, LiveTake, MoveHead, Rods, TouchHair
@@ -136,6 +137,7 @@ FROM_SERVER: tuple[type[Message], ...] = (
     Role,
     Files,
     Document,
+    Subject,
     Body,
     Locks,
     Guides,
@@ -284,6 +286,7 @@ __all__ = [
     "StageCamera",
     "Step",
     "StopRender",
+    "Subject",
     "Take",
     "TakeSnapshot",
     "Timeline",

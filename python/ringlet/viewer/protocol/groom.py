@@ -7,6 +7,14 @@ from typing import Any, ClassVar, Literal
 from ringlet.viewer.protocol.message import Message, Point, Side
 
 
+class Subject(Message):
+    """Bounds of the skin that hair is to grow on [m]: known before the groom, so that the picture shows them first."""
+
+    kind: Literal["subject"] = "subject"
+    low: Point
+    high: Point
+
+
 class Body(Message):
     """A mesh of the scene. made_of: its material: skin, eye, cloth or matte."""
 

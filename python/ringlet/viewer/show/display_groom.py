@@ -142,6 +142,7 @@ class GroomEvaluator:
         check_abort: Callable[[], None],
         progress: Callable[[str, float], None] = lambda stage, done: None,
         painted: Mapping[str, bytes] | None = None,
+        found: Callable[[Recipe, dict[str, Any]], None] = lambda recipe, inputs: None,
     ) -> DisplayGroom:
         """Evaluates a recipe.
 
@@ -151,6 +152,7 @@ class GroomEvaluator:
         check_abort: called between stages; may raise an exception to abort
         progress:    called with each stage and the fraction of the stages before it
         painted:     pictures of maps in place of those on disk, by name of the file
+        found:       called with the first recipe and what its files hold, before its groom is made
         """
         recipes = recipe.grooms or {"": recipe}
         clock = StageClock(sum(len(one.shape) + 4 for one in recipes.values()) + 1, check_abort, progress)
@@ -159,7 +161,10 @@ class GroomEvaluator:
         for name, one in recipes.items():
             one = without_muted(one, always | (muted if name == chosen else frozenset()))
             memory = self._memories.setdefault(name, Memory())
-            made[name] = make_groom(one, progress=clock, memory=memory, **self._read(name, one, painted or {}))
+            inputs = self._read(name, one, painted or {})
+            if not made:
+                found(one, inputs)
+            made[name] = make_groom(one, progress=clock, memory=memory, **inputs)
             made[name].hairs = one.hairs.model_dump(mode="json")
             check_abort()
         groom = join_grooms(made) if recipe.grooms else made[""]

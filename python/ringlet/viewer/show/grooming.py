@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from ringlet.viewer.publisher import Publisher
 from ringlet.viewer.show import overlays
 from ringlet.viewer.show.display_groom import DisplayGroom, GroomEvaluator
 from ringlet.viewer.show.progress_report import ProgressReport
+from ringlet.viewer.show.scene import read_meshes
 from ringlet.viewer.show.viewport import Viewport, measured
 from ringlet.viewer.show.work import too_large
 from ringlet.viewer.wire import pack
@@ -133,6 +135,7 @@ class Grooming:
                 check_abort=check_abort,
                 progress=progress,
                 painted=work.painted,
+                found=self._found,
             )
             self._call(self._succeed, display, work)
             if not work.draft:
@@ -145,6 +148,14 @@ class Grooming:
             self._call(self._failed, failure("a groom could not be made", error))
         finally:
             progress.close()
+
+    def _found(self, recipe: Recipe, inputs: dict[str, Any]) -> None:
+        """Shows the head of the first groom before that is made."""
+        if self._viewport.display is not None:
+            return
+        scalp, file, hidden = inputs["scalp"], inputs["scalp_file"], inputs["hidden"]
+        bodies = read_meshes(scalp, file, cage=recipe.scalp.surface == "cage", hidden=hidden)
+        self._call(self._viewport.show_head, scalp, recipe.scalp.region, lambda: bodies)
 
     def _report(self, stage: str, done: float) -> None:
         self._publisher.publish("progress", pack(protocol.Progress(stage=stage, done=done)))

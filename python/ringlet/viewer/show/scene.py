@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -16,6 +16,7 @@ from ringlet import io
 from ringlet.api.shots import cloths_and_colliders
 from ringlet.data.accessory import Accessory
 from ringlet.data.errors import UserError
+from ringlet.data.groom import shows
 from ringlet.data.mesh import Clip, Mesh
 from ringlet.groom import Groom, lay_hairs
 from ringlet.picture import material_of
@@ -75,12 +76,14 @@ class FrameState(NamedTuple):
 ReadFrame = Callable[[float], FrameState]
 
 
-def read_meshes(groom: Groom) -> list[VisibleMesh]:
-    """Visible meshes of the head's file at rest; the scalp alone when the file has none."""
-    scalp, file = groom.scalp, groom.scalp_file
-    shown = io.read_meshes(file, groom.cage) if file is not None and file.suffix in USD else []
-    shown = [mesh for mesh in shown if groom.shows(mesh.name)]
-    return [VisibleMesh(mesh) for mesh in shown or [scalp]]
+def read_meshes(scalp: Mesh, file: Path | None, *, cage: bool, hidden: Collection[str]) -> list[VisibleMesh]:
+    """Visible meshes of the head's file at rest; the scalp alone when the file has none.
+
+    cage, hidden: as in the groom
+    """
+    found = io.read_meshes(file, cage) if file is not None and file.suffix in USD else []
+    seen = [mesh for mesh in found if shows(mesh.name, hidden)]
+    return [VisibleMesh(mesh) for mesh in seen or [scalp]]
 
 
 def worn_meshes(groom: Groom) -> list[VisibleMesh]:

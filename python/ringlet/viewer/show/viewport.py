@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
+from functools import partial
 
 import numpy as np
 
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
+from ringlet.data.precision import origin_of
 from ringlet.groom import Groom
 from ringlet.shot import Shot
 from ringlet.viewer import protocol
@@ -55,11 +57,30 @@ class Viewport:
         """Origin of positions in messages [m], shape (3,)."""
         return self._origin
 
+    def show_head(self, scalp: Mesh, region: str | None, bodies: Callable[[], list[VisibleMesh]]) -> None:
+        """Shows the head, if it is not shown.
+
+        region: of the scalp that hair grows on
+        bodies: reads the visible meshes of its file
+        """
+        if self._scalp is scalp:
+            return
+        self._scalp, self._origin = scalp, origin_of(scalp.points)
+        self._shot_inputs = None
+        if len(scalp.points):
+            triangles = scalp.triangles[scalp.regions[region]] if region in scalp.regions else scalp.triangles
+            grown = scalp.points[np.unique(triangles)] - self._origin
+            low, high = (tuple(map(float, bound)) for bound in (grown.min(axis=0), grown.max(axis=0)))
+            self._publisher.publish("subject", pack(protocol.Subject(low=low, high=high)))
+        self._publish_bodies(bodies())
+
     def show(self, display: DisplayGroom, side: str, revision: int = 0) -> None:
         """Shows a groom on one side. revision: of its recipe."""
         if side == "a":
             self.display, self.revision = display, revision
-            self._show_scalp(display)
+            groom = display.groom
+            read = partial(read_meshes, groom.scalp, groom.scalp_file, cage=groom.cage, hidden=groom.hidden)
+            self.show_head(groom.scalp, groom.region, read)
             self._show_worn(display.groom)
             self._publish_names(display.groom, display.curves)
         layout = display.hairs.curves if display.hairs else display.groom.locks
@@ -73,8 +94,7 @@ class Viewport:
 
     def stage(self, display: DisplayGroom, bodies: list[VisibleMesh]) -> None:
         """Shows the contents of a USD file."""
-        self._scalp, self._origin = display.groom.scalp, display.groom.origin
-        self._publish_bodies(bodies)
+        self.show_head(display.groom.scalp, display.groom.region, lambda: bodies)
         self.show(display, "a")
 
     def show_bodies(self, shot: Shot, groom: Groom) -> None:
@@ -89,12 +109,6 @@ class Viewport:
         self._publisher.clear(f"{side}/")
         self._layouts.pop(side, None)
         self._colors.pop(side, None)
-
-    def _show_scalp(self, display: DisplayGroom) -> None:
-        if self._scalp is not display.groom.scalp:
-            self._scalp, self._origin = display.groom.scalp, display.groom.origin
-            self._shot_inputs = None
-            self._publish_bodies(read_meshes(display.groom))
 
     def _show_worn(self, groom: Groom) -> None:
         before, self._worn = self._worn, worn_meshes(groom)
