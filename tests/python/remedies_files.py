@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import os
 import struct
 import sys
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 from unittest.mock import patch
 
@@ -66,6 +68,7 @@ from ringlet.groom.several import join_grooms
 from ringlet.io.alembic.library import library
 from ringlet.io.texture import read_texture
 from ringlet.io.usd.host_meshes import PolygonMesh
+from ringlet.picture.tone import develop
 from ringlet.shot import Collider, parse_shot
 from ringlet.sim import Checkpoints, Obstacle, simulate
 from ringlet.sim.direct import open_pardiso
@@ -884,7 +887,35 @@ def damaged_crate() -> None:
     Path("d.usdc").write_bytes(content)
 
 
+def with_ocio(module: Any, act: Act) -> Act:
+    def within() -> None:
+        with patch.dict(sys.modules, {"PyOpenColorIO": module}), patch.dict(os.environ, {"OCIO": "show.ocio"}):
+            act()
+
+    return within
+
+
+def ocio_of(config: Callable[[], Any]) -> Any:
+    """A stand-in for OpenColorIO with a configuration."""
+    return SimpleNamespace(Exception=RuntimeError, Config=SimpleNamespace(CreateFromEnv=config))
+
+
+def unreadable() -> Any:
+    raise RuntimeError("no such file")
+
+
+def shown() -> None:
+    develop(np.ones((1, 1, 3)))
+
+
 FILES = [
+    Advice("has no layers of lights; leave light_layers out, or write an .exr",
+        lambda: ringlet.PictureSettings(light_layers=True).refuse_lights("a.png"),
+        lambda: ringlet.PictureSettings().refuse_lights("a.png")),
+    Advice("but OpenColorIO is not installed; try: pip install", with_ocio(None, shown), shown),
+    Advice("cannot be read ({}); name another, or unset the variable", with_ocio(ocio_of(unreadable), shown), shown),
+    Advice("has no linear colour space of Rec. 709", with_ocio(ocio_of(lambda: SimpleNamespace(
+        getColorSpace=lambda name: None, getDefaultDisplay=str)), shown), shown),
     Advice("Alembic needs alembic3d, which is not installed", without_alembic(line("convert groom.usdc a.abc")),
         line("convert groom.usdc a.abc")),
     Advice("cannot be read as Alembic ({}); export it again", in_order(line("convert groom.usdc a.abc"),

@@ -39,7 +39,8 @@ def write_still(
 ) -> None:
     """Path-traces one frame of a USD stage: the hairs and the bodies in it, framed on their own.
 
-    path:     a PNG, a JPEG, or an EXR, which has linear light and layers: depth, normal, albedo and lock
+    path:     a PNG, a JPEG, or an EXR, which has linear light and layers: depth, normal, albedo, motion until the next
+              frame, lock, and mattes of locks, grooms and bodies
     frame:    the first of the stage by default
     settings: those of ``PictureSettings``: ``width=480, samples=16, view="side", light="window"``
     """
@@ -48,7 +49,8 @@ def write_still(
     pose = pose_at(stage, frame, chosen.camera)
     opening, closing = shutter_poses(stage, frame, pose, chosen)
     lock = lock_points(stage, pose.hairs, chosen.look_at)
-    picture.still(opening, path, chosen, lock=lock, closing=closing, progress=progress)
+    later = pose_after(stage, frame, chosen) if Path(path).suffix.lower() == ".exr" else None
+    picture.still(opening, path, chosen, lock=lock, closing=closing, later=later, progress=progress)
 
 
 @recorded()
@@ -170,7 +172,15 @@ def _posed(stage: Path, frame: float | None) -> tuple[list[Any], Any]:
 
 def pose_at(stage: Path, frame: float | None, camera: str | None = None) -> Pose:
     """Bodies, hairs, and the camera if one is named, of a stage at a frame."""
-    return Pose(*_posed(stage, frame), _camera(stage, camera, frame))
+    return Pose(*_posed(stage, frame), _camera(stage, camera, frame), io.groom_names(stage))
+
+
+def pose_after(stage: Path, frame: float | None, settings: PictureSettings) -> Pose | None:
+    """The pose of the frame after one; None at the last one, and where nothing moves."""
+    frames = io.read_hair_frames(stage)
+    if frame is None or not len(frames) or frame + 1 > frames[-1]:
+        return None
+    return pose_at(stage, frame + 1, settings.camera)
 
 
 def shutter_poses(stage: Path, frame: float | None, pose: Pose, settings: PictureSettings) -> tuple[Pose, Pose | None]:

@@ -46,6 +46,7 @@ SETTINGS = [
     setting("focus", float, "Distance in focus; by default the nearest in the middle.", "CM", CENTIMETRE),
     setting("light", str, "studio, window, sun, or an HDRI: an .exr or .hdr file.", "LIGHT"),
     setting("light_turn", float, "Turns the light about the vertical, counter-clockwise from above.", "DEGREES"),
+    setting("light_layers", bool, "Each light in layers of its own, in an EXR; takes as many pictures.", None),
     setting("background", str, "studio or transparent."),
     setting("shutter", float, "Motion blur: 180 has the shutter open for half a frame.", "DEGREES"),
     setting("denoiser", str, "oidn (Intel Open Image Denoise, the default where it is installed) or none."),

@@ -38,6 +38,7 @@ class PictureSettings:
                    camera in the stage, or else 0
     focus:         distance of the plane in focus [m]; by default that of the camera, or of the nearest in the middle
     light:         a light rig, or an HDRI: studio, window, sun, or an .exr or .hdr file
+    light_layers:  renders each light alone, into layers of an EXR, which add up to the picture
     light_turn:    turns the light about the vertical [degrees], counter-clockwise from above
     background:    studio or transparent; an EXR has no backdrop
     shutter:       angle of the shutter [degrees], for motion blur: 180 is open for half a frame from the frame on
@@ -76,6 +77,7 @@ class PictureSettings:
     focus: float | None = None
     light: str = "studio"
     light_turn: float = 0.0
+    light_layers: bool = False
     background: str = "studio"
     shutter: float = 0.0
     denoiser: str = "oidn" if find_spec("pyoidn") else "none"
@@ -104,6 +106,11 @@ class PictureSettings:
                     raise UserError(
                         f"picture: {name} is given with camera {self.camera}, which has its own; leave one out"
                     )
+
+    def refuse_lights(self, what: str) -> None:
+        """Raises UserError for layers of lights where there are no layers."""
+        if self.light_layers:
+            raise UserError(f"picture: {what} has no layers of lights; leave light_layers out, or write an .exr")
 
     def refuse_all_but(self, taken: Collection[str], what: str) -> None:
         """Raises UserError for a setting that differs from its default and is not one of those taken."""

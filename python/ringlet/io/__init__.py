@@ -9,7 +9,7 @@ from ringlet.io.usd.camera import camera_paths, read_camera
 from ringlet.io.usd.check import problems
 from ringlet.io.usd.deformable import Rod, write_deformable_scene
 from ringlet.io.usd.groom import as_written, is_groom, read_groom, write_groom
-from ringlet.io.usd.hairs import HairWriter, read_hair_frames, read_hairs, read_stage
+from ringlet.io.usd.hairs import HairWriter, groom_names, read_hair_frames, read_hairs, read_stage
 from ringlet.io.usd.head import head_path, write_head
 from ringlet.io.usd.head_clip import write_head_clip
 from ringlet.io.usd.host_meshes import PolygonMesh, write_polygon_meshes
@@ -39,6 +39,7 @@ __all__ = [
     "check_target",
     "for_unreal",
     "format_of",
+    "groom_names",
     "has_hairs_on_demand",
     "head_path",
     "heat",

@@ -20,11 +20,15 @@ GOLDEN = 0.6180339887498949
 
 @dataclass(frozen=True)
 class Pose:
-    """What a camera sees at one time: posed bodies, hairs [m], and a camera of the stage, or None for another."""
+    """What a camera sees at one time: posed bodies, hairs [m], and a camera of the stage, or None for another.
+
+    grooms: names of the grooms that hairs are of, where there are several
+    """
 
     bodies: Sequence[PosedBody]
     hairs: Curves
     camera: Camera | None = None
+    grooms: Sequence[str] = ()
 
     def towards(self, other: Pose, fraction: float) -> Pose:
         """Linear interpolation towards a later pose. Raises UserError where the number of points changes."""
@@ -36,7 +40,7 @@ class Pose:
         camera = self.camera
         if camera is not None and other.camera is not None:
             camera = _turned(camera, other.camera, fraction)
-        return Pose(bodies, hairs, camera)
+        return Pose(bodies, hairs, camera, self.grooms)
 
 
 def fraction_of_pass(number: int) -> float:

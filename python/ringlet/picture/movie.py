@@ -20,6 +20,7 @@ from ringlet.data.errors import UserError
 from ringlet.data.files import check_place, replacing
 from ringlet.data.picture import PictureSettings
 from ringlet.picture.motion import Pose
+from ringlet.picture.ocio import configured
 from ringlet.picture.render import Progress
 from ringlet.picture.rigs import about_the_vertical
 from ringlet.picture.still import Standpoint, developed, place, subject, take
@@ -72,6 +73,7 @@ def check_output(output: Path, settings: PictureSettings) -> None:
         raise UserError(
             f"{output}: ends in '{output.suffix}'; must end in {' or '.join(VIDEOS)}, or be a folder of frames"
         )
+    settings.refuse_lights("a movie")
     if output.suffix in VIDEOS and settings.background == "transparent":
         raise UserError(f"{output}: a video cannot be transparent; give a folder, for PNG frames")
     if output.suffix in VIDEOS:
@@ -132,7 +134,7 @@ def _digest(pose: Pose, closing: Pose | None, standpoint: Standpoint | None, set
     """Digest of all that a frame is made from: geometry, camera, light and settings."""
     found = blake2b(digest_size=16)
     look = {f.name: getattr(settings, f.name) for f in fields(settings) if f.name not in DO_NOT_COUNT}
-    rest: list[Any] = [version("ringlet"), look, standpoint and astuple(standpoint)]
+    rest: list[Any] = [version("ringlet"), look, standpoint and astuple(standpoint), configured()]
     if Path(settings.light).is_file():
         rest.append(blake2b(Path(settings.light).read_bytes()).hexdigest())
     for at in (pose, closing):

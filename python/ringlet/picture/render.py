@@ -14,8 +14,8 @@ from ringlet.picture import oidn
 from ringlet.picture.along import hair_field
 from ringlet.picture.engine import mitsuba
 from ringlet.picture.fiber import hair_reflectances
-from ringlet.picture.layers import HairGroup, Layers, trace_layers
-from ringlet.picture.motion import fraction_of_pass
+from ringlet.picture.layers import HairGroup, Later, Layers, trace_layers
+from ringlet.picture.motion import Pose, fraction_of_pass
 from ringlet.picture.passes import Passes
 from ringlet.picture.scene import Scene, image_sensor, scene_scale
 from ringlet.picture.studio import backdrop
@@ -106,10 +106,10 @@ def _denoised(scene: Scene, accumulated: Passes) -> NDArray[np.float32]:
     return np.asarray(denoised + hair.share[:, :, None] * accumulated.detail(denoised, hair), np.float32)
 
 
-def layers_of(scene: Scene, camera: Camera, color: HairColor | None) -> Layers:
-    """Layers of a scene other than its light: depth, normal, albedo and lock."""
+def layers_of(scene: Scene, camera: Camera, color: HairColor | None, pose: Pose, later: Later | None = None) -> Layers:
+    """Layers of a scene other than its light; ``later`` is what is seen in the next frame."""
     groups = [HairGroup(some, hair_reflectances(some, color)) for some in scene.hairs]
-    return trace_layers(mitsuba(), scene, camera, groups)
+    return trace_layers(mitsuba(), scene, camera, groups, pose.bodies, pose.grooms, later)
 
 
 def over_backdrop(image: NDArray[np.float32]) -> NDArray[np.floating]:

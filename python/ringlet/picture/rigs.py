@@ -41,6 +41,7 @@ class Rig:
     axes:     of the camera, the rows of a (3, 3) array
     centre:   of the subject [m], shape (3,)
     distance: of a portrait camera from the subject [m]
+    only:     the one light that is on, by its name; all for None
     """
 
     name: str
@@ -48,9 +49,19 @@ class Rig:
     axes: NDArray[np.float64]
     centre: NDArray[np.float64]
     distance: float
+    only: str | None = None
+
+    @property
+    def lights(self) -> list[str]:
+        """Names of the lights."""
+        return list(self._all(mitsuba(), np.zeros(3), 1.0))
 
     def emitters(self, mi: Any, origin: NDArray[np.float64], scale: float) -> dict[str, Any]:
-        """Mitsuba emitters and shapes; ``origin`` [m] and ``scale`` take positions to the scene."""
+        """Mitsuba emitters and shapes that are on; ``origin`` [m] and ``scale`` take positions to the scene."""
+        found = self._all(mi, origin, scale)
+        return found if self.only is None else {self.only: found[self.only]}
+
+    def _all(self, mi: Any, origin: NDArray[np.float64], scale: float) -> dict[str, Any]:
         centre, distance = (self.centre - origin) * scale, self.distance * scale
         if self.name == STUDIO:
             return lights(mi, self.axes @ about_the_vertical(-self.turn), distance, centre)

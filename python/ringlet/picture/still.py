@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +20,7 @@ from ringlet.picture import oidn
 from ringlet.picture.camera import angles_towards, frame, picture_size, take_position
 from ringlet.picture.engine import mitsuba, using
 from ringlet.picture.exr import write_exr
-from ringlet.picture.layers import Layers
+from ringlet.picture.layers import Later, Layers
 from ringlet.picture.motion import Pose
 from ringlet.picture.render import (
     Progress,
@@ -31,6 +31,7 @@ from ringlet.picture.render import (
 )
 from ringlet.picture.rigs import Rig, check_rig
 from ringlet.picture.scene import Scene, build_scene
+from ringlet.picture.strands import split
 from ringlet.picture.tone import develop
 
 
@@ -44,10 +45,14 @@ class Standpoint:
 
 @dataclass(frozen=True)
 class Taken:
-    """A picture before it is developed: light and coverage, shape (height, width, 4), and its layers if there are."""
+    """A picture before it is developed: light and coverage, shape (height, width, 4), and its layers if there are.
+
+    lights: that of each light, shape (height, width, 3); they add up to the picture
+    """
 
     image: NDArray[np.float32]
     layers: Layers | None = None
+    lights: dict[str, NDArray[np.float32]] = field(default_factory=dict)
 
 
 def still(
@@ -57,12 +62,14 @@ def still(
     *,
     lock: NDArray[np.floating] | None = None,
     closing: Pose | None = None,
+    later: Pose | None = None,
     progress: Progress | None = None,
 ) -> Path:
     """Writes a picture of hairs and bodies, framed on the hair and the head: a PNG, a JPEG, or an EXR with layers.
 
     lock:     points of the lock to look at in place of the head [m], shape (n, 3)
     closing:  the pose when the shutter closes, for motion blur
+    later:    that of the next frame, for the layer of motion
     progress: called with "picture", the passes done and their number
 
     Raises UserError for an unknown view, colour or light, and without hairs and bodies.
@@ -70,9 +77,11 @@ def still(
     settings = settings or PictureSettings()
     refuse_transparent(settings, path)
     is_exr = Path(path).suffix.lower() == ".exr"
-    taken = take(pose, settings, lock=lock, closing=closing, layers=is_exr, progress=progress)
+    if not is_exr:
+        settings.refuse_lights(str(path))
+    taken = take(pose, settings, lock=lock, closing=closing, layers=is_exr, later=later, progress=progress)
     if taken.layers is not None and is_exr:
-        write_exr(mitsuba(), path, taken.image, taken.layers)
+        write_exr(mitsuba(), path, taken.image, taken.layers, taken.lights)
     else:
         with replacing(path) as aside:
             developed(taken.image, settings.background).save(aside)
@@ -87,17 +96,18 @@ def take(
     closing: Pose | None = None,
     standpoint: Standpoint | None = None,
     layers: bool = False,
+    later: Pose | None = None,
     progress: Progress | None = None,
 ) -> Taken:
     """Takes a picture as in ``still``.
 
     standpoint: camera and light, in place of those that the settings give
-    layers:     asks for depth, normal, albedo and lock, at the opening shutter
+    layers:     asks for depth, normal, albedo, motion and mattes, at the opening shutter
     """
     check_rig(settings.light)
     check_denoiser(settings.denoiser)
     with using(settings.engine):
-        return _taken(pose, settings, lock, closing, standpoint, layers, progress)
+        return _taken(pose, settings, lock, closing, standpoint, layers, later, progress)
 
 
 def _taken(
@@ -107,6 +117,7 @@ def _taken(
     closing: Pose | None,
     standpoint: Standpoint | None,
     layers: bool,
+    later: Pose | None,
     progress: Progress | None,
 ) -> Taken:
     """``take`` with settings that are checked."""
@@ -119,24 +130,38 @@ def _taken(
         "size": picture_size(settings, pose.camera),
         "color": pigments,
         "max_depth": settings.bounces + 1,
-        "rig": standpoint.rig,
     }
 
-    def scene_at(fraction: float) -> Scene:
-        now = pose if closing is None else pose.towards(closing, fraction)
-        at = camera if now.camera is None else place(settings, subject(now), lock, now.camera).camera
-        return build_scene(now.bodies, now.hairs, at, **look)
+    def camera_of(now: Pose) -> Camera:
+        return camera if now.camera is None else place(settings, subject(now), lock, now.camera).camera
 
-    scene = scene_at(0.0)
-    image = trace(
-        scene,
-        samples=settings.samples,
-        seconds=settings.seconds,
-        progress=progress,
-        denoise=settings.denoiser == "oidn",
-        moved=None if closing is None else scene_at,
-    )
-    return Taken(image, layers_of(scene, camera, pigments) if layers else None)
+    def traced(rig: Rig) -> tuple[Scene, NDArray[np.float32]]:
+        def scene_at(fraction: float) -> Scene:
+            now = pose if closing is None else pose.towards(closing, fraction)
+            return build_scene(now.bodies, now.hairs, camera_of(now), rig=rig, **look)
+
+        scene = scene_at(0.0)
+        return scene, trace(
+            scene,
+            samples=settings.samples,
+            seconds=settings.seconds,
+            progress=progress,
+            denoise=settings.denoiser == "oidn",
+            moved=None if closing is None else scene_at,
+        )
+
+    rig = standpoint.rig
+    if settings.light_layers:
+        each = {name: traced(replace(rig, only=name)) for name in rig.lights}
+        (scene, image), *_ = each.values()
+        lights = {name: light[:, :, :3] for name, (_, light) in each.items()}
+        image = np.concatenate([sum(lights.values()), image[:, :, 3:]], axis=2, dtype=np.float32)
+    else:
+        (scene, image), lights = traced(rig), {}
+    if not layers:
+        return Taken(image, None, lights)
+    then = None if later is None else Later(split(later.hairs), later.bodies, camera_of(later))
+    return Taken(image, layers_of(scene, camera, pigments, pose, then), lights)
 
 
 def place(

@@ -170,6 +170,14 @@ def read_stage(path: Path | str, frame: float | None = None) -> tuple[list[Body]
         return bodies, hairs, frames
 
 
+def groom_names(path: Path | str) -> list[str]:
+    """Names of the grooms of the hairs of a stage, where these are of several."""
+    with reading(path) as source:
+        own = source.stage.GetPrimAtPath(HAIRS)
+        scope = bool(own) and own.GetTypeName() == "Scope"
+        return [prim.GetName() for prim in own.GetChildren()] if scope else []
+
+
 def read_hair_frames(path: Path | str) -> NDArray[np.float64]:
     """Whole frames of a stage with animated hairs; empty for static hairs."""
     with reading(path) as source:
