@@ -233,3 +233,16 @@ def test_the_spread_of_a_tail_has_a_ramp():
         places = grid(locks)[np.arange(len(locks)), past][locks.lengths() > 0.1]
         apart.append(np.linalg.norm(places - places.mean(axis=0), axis=1).mean())
     assert apart[0] > 1.3 * apart[1]
+
+
+def test_a_tail_that_splays_falls_to_all_sides_as_a_fountain():
+    """Outermost locks leave the tie level and fall; those in its middle rise along its axis first."""
+    tips = {}
+    for splay in (0, 90):
+        settings = f"{TOP}after = 'tail'\nflare = 1\nfall = 8\nsplay = {splay}\n"
+        locks = tied(settings).locks
+        tips[splay] = grid(locks)[:, -1] - [0.0, 0.096, 0.0]
+    along, out = (np.linalg.norm(tips[splay][:, [0, 2]], axis=1) for splay in (0, 90))
+    assert np.percentile(out, 90) > 2.0 * np.percentile(along, 90)
+    side = np.arctan2(tips[90][:, 0], tips[90][:, 2])[out > 0.02]
+    assert out.max() > 0.03 and np.histogram(side, 4, (-np.pi, np.pi))[0].min() > 0.15 * len(side)

@@ -27,7 +27,16 @@ PATH_POINTS = 24  # of the path over the head, and of that after the tie
 SMOOTHING = 3  # passes over the path on the skin
 CENTRE = 0.85  # distance of a puff's centre from its tie, in radii of the puff
 UNDERSIDE = -0.85  # cosine, from the axis, of the part of a puff around its tie where no lock ends
-PER_TIE = ("off", "radius", "fall", "width", "height", "windings", "band")  # settings with a value for each tie
+PER_TIE = (
+    "off",
+    "radius",
+    "fall",
+    "splay",
+    "width",
+    "height",
+    "windings",
+    "band",
+)  # settings with a value for each tie
 CARRIERS = 40  # roots nearest to a tie, which carry its band
 BAND_COLOR = (0.02, 0.02, 0.025)
 
@@ -72,6 +81,11 @@ class Tie(Shape):
     )
     fall: Annotated[Varied, Quantity("m", 1e-3, 10.0)] = Field(
         default=Varied(value=0.06), description="length over which a tail without a curve turns down"
+    )
+    splay: Annotated[Varied, Quantity("deg", 0.0, 180.0)] = Field(
+        default=Varied(value=0.0),
+        description="angle from the axis of the tie at which the outermost locks of such a tail leave it: 0 along it, "
+        "90 to all sides, as a fountain",
     )
     width: Annotated[Varied, Quantity("m", 5e-3, 1.0)] = Field(
         default=Varied(value=0.12), description="width of the ball or the bun"
@@ -209,14 +223,16 @@ class Tie(Shape):
 
     def _tail(self, points: NDArray, offset: NDArray, flare: NDArray, tie: Place) -> NDArray[np.float64]:
         """Paths of a tail, shape (count, k, 3), for the flare of each lock, shape (count,)."""
-        line = tie.line
-        if line is None:
+        lines = None if tie.line is None else tie.line[None]
+        if lines is None:
             run = np.linspace(0.0, max(1.1 * float(arc_lengths(points)[:, -1].max()), 1e-3), 3 * PATH_POINTS)
-            direction = unit(tie.axis - (run / tie.value["fall"])[:, None] * UP)
-            line = tie.place + np.concatenate([np.zeros((1, 3)), np.cumsum(direction[:-1] * run[1], axis=0)])
-        wider = (flare - 1.0)[:, None] * self.flare.along(np.linspace(0.0, 1.0, len(line)))
+            out = np.radians(tie.value["splay"]) * np.linalg.norm(offset, axis=1, keepdims=True)
+            leaving = np.cos(out) * tie.axis + np.sin(out) * unit(offset)
+            direction = unit(leaving[:, None] - (run / tie.value["fall"])[None, :, None] * UP)
+            lines = tie.place + np.cumsum(direction * np.diff(run, prepend=0.0)[None, :, None], axis=1)
+        wider = (flare - 1.0)[:, None] * self.flare.along(np.linspace(0.0, 1.0, lines.shape[1]))
         width = tie.value["radius"] * np.maximum(1.0 + wider, 0.0)
-        tail: NDArray[np.float64] = line[None] + width[:, :, None] * offset[:, None, :]
+        tail: NDArray[np.float64] = lines + width[:, :, None] * offset[:, None, :]
         return tail
 
     def _ball(self, disk: NDArray, offset: NDArray, tie: Place) -> NDArray[np.float64]:
