@@ -82,7 +82,7 @@ class Rods(Message):
     key:   changes with the groom
     pivot: about which the head turns on its neck [m]
 
-    ``points`` are their vertices, ``along`` the places of these on a lock, from 0 at its root to 1; ``axis`` is a
+    ``points`` are their vertices, and ``along`` the places of these on a lock, from 0 at its root to 1. ``axis`` is a
     direction across the root of each rod, and ``rise`` its length by that of its lock. ``ids`` are those of the locks,
     and ``carrier`` the rod of each.
     """
