@@ -315,6 +315,27 @@ def test_a_shot_uses_the_copy_of_its_recipe_when_it_is_asked_to(folder: Path):
     assert 'groom = "wider.recipe.toml"' in (folder / "small.shot.toml").read_text()
 
 
+def test_a_recipe_that_is_deleted_is_reported_and_written_again(folder: Path):
+    recipe = folder / "small.recipe.toml"
+    text = recipe.read_text()
+    with serving(folder) as client, page(client) as one:
+        one.receive("numbers", draft=False)
+        recipe.unlink()
+        found = problem(one, "gone/recipe")
+        assert (
+            found["message"]
+            == "small.recipe.toml is no longer on disk; what it said is kept here, and Save writes it again"
+        )
+        recipe.write_text(text)  # it is back
+        while one.receive("problems")["problems"]:
+            pass
+        recipe.unlink()
+        press(one, problem(one, "gone/recipe"), "Save")
+        one.receive("saved")
+        assert recipe.read_text() == text
+        assert "gone/recipe" not in {each["subject"] for each in one.latest("problems")["problems"]}
+
+
 def test_a_shot_that_is_saved_with_its_recipe_under_other_names_names_the_copy(folder: Path):
     before = {path: path.read_text() for path in (folder / "small.recipe.toml", folder / "small.shot.toml")}
     with serving(folder, "small.shot.toml") as client, page(client) as one:

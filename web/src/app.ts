@@ -36,6 +36,7 @@ import type { SharePage, Welcome } from "./protocol";
 import { skips } from "./panel/skips";
 import { Unsaved } from "./unsaved";
 import { keep } from "./view/capture";
+import { LOST_PICTURE } from "./view/context";
 import { Viewer } from "./view/viewer";
 
 export class App {
@@ -63,6 +64,8 @@ export class App {
     root.append(picture);
     const viewer = (this.viewer = new Viewer(picture));
     this.fillPicture();
+    const reload = h("button", { type: "button", class: "quiet", onclick: () => location.reload() }, "Load the page again");
+    viewer.onLost = () => this.problems.keep("picture", LOST_PICTURE, reload);
 
     // What is in the hand, and how the groom is looked at
     this.lock = new LockTool(model, viewer);
@@ -168,7 +171,7 @@ export class App {
 
   private connected(state: LinkState, why: string): void {
     document.documentElement.dataset["link"] = state;
-    this.problems.keep(state === "open" ? "" : why);
+    this.problems.keep("link", state === "open" ? "" : why);
     if (state === "lost") this.unsaved.keep();
   }
 

@@ -1,7 +1,8 @@
 // What the camera looks at before there is hair.
 
 import { expect, test } from "vitest";
-import { open } from "./page";
+import { control, texts } from "./controls";
+import { open, Socket } from "./page";
 
 test("the skin that hair is to grow on is framed until hair is there", async () => {
   const page = await open();
@@ -18,4 +19,15 @@ test("the skin that hair is to grow on is framed until hair is there", async () 
   target().forEach((value, axis) => expect(value).toBeCloseTo(hair[axis]!, 6));
   page.hear({ kind: "subject", low: [2, 1, -0.1], high: [2.2, 1.1, 0.1] }); // another head, which keeps the camera
   target().forEach((value, axis) => expect(value).toBeCloseTo(hair[axis]!, 6));
+});
+
+test("a graphics card that is lost is one line, with what to do", async () => {
+  const page = await open();
+  page.app.viewer.canvas.dispatchEvent(new Event("webglcontextlost"));
+  Socket.latest.close(); // is told too
+  expect(texts(".problems .problem:not([hidden]) p").filter(Boolean)).toEqual([
+    "The picture stands still: the browser has lost the graphics card. Load the page again; the groom and all edits stay.",
+    "The server does not answer. Your edits are kept here until it is back.",
+  ]);
+  expect(control("Load the page again")).toBeTruthy();
 });

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from pathlib import Path
 
 from ringlet.data.errors import UserError
 from ringlet.viewer import protocol
 from ringlet.viewer.files.conflicts import differences
 from ringlet.viewer.files.open_files import Files
-from ringlet.viewer.files.problems import GROOM, ProblemList, conflict_fixes
+from ringlet.viewer.files.problems import GROOM, ProblemList, conflict_fixes, dismiss, gone
 from ringlet.viewer.files.watcher import FileWatcher
 from ringlet.viewer.keep.reviewing import Reviewing
 from ringlet.viewer.play.caches import Caches
 from ringlet.viewer.project import Project
-from ringlet.viewer.protocol import File
+from ringlet.viewer.protocol import File, Fix
 from ringlet.viewer.publisher import Publisher
 from ringlet.viewer.wire import pack
 
@@ -67,7 +67,12 @@ class DiskChanges:
 
     async def _watch(self) -> None:
         posted, looks = None, 0
+        missing, reported = set[File](), set[File]()
         while True:
+            before, missing = missing, await asyncio.to_thread(self._missing)
+            if (lasting := missing & before) != reported:  # an editor removes a file before it renames another
+                self._call(self.show_gone, lasting)
+                reported = lasting
             if changed := await asyncio.to_thread(self._changed_files):
                 self._call(self.meet, changed)
             if looks * WATCH_INTERVAL % FILES_INTERVAL < WATCH_INTERVAL:
@@ -116,6 +121,19 @@ class DiskChanges:
             self._problems.show(GROOM, str(error))
             return
         self._edited(file)
+
+    def _missing(self) -> set[File]:
+        return {file for file, document in self._files.documents.items() if not document.path.exists()}
+
+    def show_gone(self, missing: Collection[File]) -> None:
+        """Shows which documents are no longer on disk."""
+        for file, document in self._files.documents.items():
+            if file not in missing:
+                self._problems.clear(gone(file))
+                continue
+            message = f"{document.path.name} is no longer on disk; what it said is kept here, and Save writes it again"
+            save = Fix(label="Save", message={"kind": "save", "file": file})
+            self._problems.show(gone(file), message, [save, dismiss(gone(file))])
 
     def show_conflict(self, file: File) -> None:
         """Shows the conflict of a document with its file on disk, or that there is none."""

@@ -10,8 +10,8 @@ import { showChanges } from "./files";
 export class ProblemBar {
   readonly element = h("section", { class: "problems", role: "alert", "aria-label": "Problems" });
   private readonly progress = h("div", { class: "problem progress", hidden: true, role: "status" });
-  /** A problem of the page itself, such as a lost connection. */
-  private own = "";
+  /** Problems of the page itself by subject, such as a lost connection, each with a button of its own if it has one. */
+  private readonly own = new Map<string, HTMLElement>();
 
   private readonly list = h("div", {});
 
@@ -30,14 +30,14 @@ export class ProblemBar {
   }
 
   /** Shows a problem of the page itself; an empty text removes it. */
-  keep(text: string): void {
-    this.own = text;
+  keep(subject: string, text: string, ...buttons: HTMLElement[]): void {
+    if (text) this.own.set(subject, h("div", { class: "problem" }, h("p", {}, text), h("div", { class: "group" }, ...buttons)));
+    else this.own.delete(subject);
     this.update();
   }
 
   private update(): void {
-    const own = this.own ? [h("div", { class: "problem" }, h("p", {}, this.own))] : [];
-    this.list.replaceChildren(...own, ...this.model.problems.map((one) => this.row(one)), this.progress);
+    this.list.replaceChildren(...this.own.values(), ...this.model.problems.map((one) => this.row(one)), this.progress);
     document.documentElement.classList.toggle("old-look", this.model.problems.some((one) => OLD_LOOK.includes(one.subject)));
   }
 

@@ -3,6 +3,9 @@
 export const NO_PICTURE =
   "No picture: this browser has no WebGL 2. Turn on graphics acceleration in its settings, or use another browser. All else works.";
 
+export const LOST_PICTURE =
+  "The picture stands still: the browser has lost the graphics card. Load the page again; the groom and all edits stay.";
+
 /** The context of a canvas; null: there is none. */
 export function contextOf(canvas: HTMLCanvasElement): WebGL2RenderingContext | null {
   return canvas.getContext("webgl2", { antialias: false, powerPreference: "high-performance" });

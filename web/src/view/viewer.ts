@@ -52,6 +52,8 @@ export class Viewer {
   readonly looks: Looks;
   turntable = false;
   onPaint: () => void = () => {};
+  /** The browser has lost the graphics card. */
+  onLost: () => void = () => {};
   /** The camera has moved. */
   onLook: () => void = () => {};
   onDraw: (statistics: DrawStatistics) => void = () => {};
@@ -94,6 +96,7 @@ export class Viewer {
     this.film = this.painter.film;
     element.append(canvas);
     if (!context) element.append(h("p", { class: "undrawn", role: "status" }, NO_PICTURE));
+    canvas.addEventListener("webglcontextlost", () => this.onLost());
     canvas.setAttribute("aria-label", "The groom. Arrow keys orbit the camera, plus and minus zoom, F frames all hair.");
     this.view = new OrbitCamera(canvas);
     this.camera = this.view.camera;

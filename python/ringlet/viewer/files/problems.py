@@ -21,6 +21,11 @@ OF_OPENING = {RECOVERED, RENAMED}
 UNDO = Fix(label="Undo", message={"kind": "undo"})
 
 
+def gone(file: File) -> str:
+    """Subject of a problem: a file is no longer on disk."""
+    return f"gone/{file}"
+
+
 class ProblemList:
     """The problems of a session, by subject."""
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from ringlet.data.errors import UserError
 from ringlet.viewer import protocol
 from ringlet.viewer.files.open_files import Files
-from ringlet.viewer.files.problems import COPIED, GROOM, RECOVERED, RENAMED, SAVE, ProblemList, dismiss
+from ringlet.viewer.files.problems import COPIED, GROOM, RECOVERED, RENAMED, SAVE, ProblemList, dismiss, gone
 from ringlet.viewer.files.writing import write, write_copy
 from ringlet.viewer.protocol import File, Fix
 
@@ -36,7 +36,7 @@ class Saving:
             reason = f"{files.recipe.path.name} is not saved: {self._problems[GROOM].message}"
             self._problems.show(SAVE, reason, [anyway, dismiss(SAVE)])
             return None
-        self._problems.clear(SAVE, COPIED, RECOVERED, RENAMED)
+        self._problems.clear(SAVE, COPIED, RECOVERED, RENAMED, gone(message.file))
         if not message.name:
             return write(files, message.file)
         with_copy = message.file == "shot" and message.with_copy

@@ -70,8 +70,8 @@ class Viewport:
         if len(scalp.points):
             triangles = scalp.triangles[scalp.regions[region]] if region in scalp.regions else scalp.triangles
             grown = scalp.points[np.unique(triangles)] - self._origin
-            low, high = (tuple(map(float, bound)) for bound in (grown.min(axis=0), grown.max(axis=0)))
-            self._publisher.publish("subject", pack(protocol.Subject(low=low, high=high)))
+            (x, y, z), (far_x, far_y, far_z) = grown.min(axis=0).tolist(), grown.max(axis=0).tolist()
+            self._publisher.publish("subject", pack(protocol.Subject(low=(x, y, z), high=(far_x, far_y, far_z))))
         self._publish_bodies(bodies())
 
     def show(self, display: DisplayGroom, side: str, revision: int = 0) -> None:
