@@ -1,33 +1,65 @@
-// What the camera looks at before there is hair.
+// How the groom is looked at: the list of views, light, lens and bookmarks, and what is remembered of them.
 
-import { expect, test } from "vitest";
-import { control, texts } from "./controls";
-import { open, Socket } from "./page";
+import { expect, test, vi } from "vitest";
+import { choose, control, press } from "./controls";
+import { open, type Page } from "./page";
 
-test("the skin that hair is to grow on is framed until hair is there", async () => {
+const eye = (page: Page) => page.app.viewer.camera.position.toArray();
+const bookmark = (digit: number, shiftKey = false) => press(String(digit), { code: `Digit${digit}`, shiftKey }, document.querySelector("canvas")!);
+
+test("the list of views says when the camera has left them", async () => {
   const page = await open();
-  const { viewer } = page.app;
-  const target = () => viewer.controls.target.toArray();
-  const hair = target();
-  viewer.reset();
-  page.hear({ kind: "subject", low: [2, 1, -0.1], high: [2.2, 1.1, 0.1] });
-  expect(target()[0]).toBeCloseTo(2.1, 1);
-  expect(target()[1]).toBeCloseTo(1.03, 1);
-  const away = viewer.camera.position.clone().sub(viewer.controls.target).length();
-  expect(away).toBeGreaterThan(0.4); // outside of the head
-  page.hear(page.first("locks"));
-  target().forEach((value, axis) => expect(value).toBeCloseTo(hair[axis]!, 6));
-  page.hear({ kind: "subject", low: [2, 1, -0.1], high: [2.2, 1.1, 0.1] }); // another head, which keeps the camera
-  target().forEach((value, axis) => expect(value).toBeCloseTo(hair[axis]!, 6));
+  const views = control<HTMLSelectElement>("View from");
+  choose(views, "Left");
+  const first = page.app.viewer.view.place;
+  page.app.viewer.key("ArrowLeft");
+  expect(views.selectedOptions[0].textContent).toBe("free view");
+  expect(page.app.viewer.view.place).not.toEqual(first);
+  choose(views, "Left");
+  page.app.viewer.view.place.forEach((value, k) => expect(value).toBeCloseTo(first[k], 9));
 });
 
-test("a graphics card that is lost is one line, with what to do", async () => {
+test("light, camera and bookmarks are remembered", async () => {
   const page = await open();
-  page.app.viewer.canvas.dispatchEvent(new Event("webglcontextlost"));
-  Socket.latest.close(); // is told too
-  expect(texts(".problems .problem:not([hidden]) p").filter(Boolean)).toEqual([
-    "The picture stands still: the browser has lost the graphics card. Load the page again; the groom and all edits stay.",
-    "The server does not answer. Your edits are kept here until it is back.",
-  ]);
-  expect(control("Load the page again")).toBeTruthy();
+  const light = control<HTMLSelectElement>("Light");
+  choose(light, light.options[1].value);
+  page.app.viewer.orbit(0.7, 0.1);
+  page.app.viewer.move();
+  bookmark(1, true);
+  const there = eye(page);
+  press("ArrowLeft", {}, page.app.viewer.canvas);
+  expect(eye(page)).not.toEqual(there);
+  bookmark(1);
+  eye(page).forEach((value, k) => expect(value).toBeCloseTo(there[k], 9));
+  const again = await open();
+  eye(again).forEach((value, k) => expect(value).toBeCloseTo(there[k], 9));
+  expect(control<HTMLSelectElement>("Light").selectedIndex).toBe(1);
+});
+
+test("light, lens and bookmarks are kept with the recipe, for other browsers", async () => {
+  const page = await open();
+  const { viewer } = page.app;
+  const size = () => viewer.view.focalLength / viewer.camera.position.distanceTo(viewer.controls.target);
+  const before = size();
+  control("Camera, light and sheet").click();
+  const set = (name: string, value: number) => {
+    const input = control<HTMLInputElement>(name);
+    input.value = String(value);
+    for (const event of ["input", "change"]) input.dispatchEvent(new Event(event, { bubbles: true }));
+  };
+  set("Focal length", 50);
+  set("Light rotation", 90);
+  expect(size()).toBeCloseTo(before, 9); // of the subject in the picture
+  control("Store bookmark 2").click();
+  expect(page.last("keep_view")).toMatchObject({ slot: 2, look: { light_turn: 90, focal_length: 50 } });
+  vi.advanceTimersByTime(2000);
+  expect(page.last("keep_view")).toMatchObject({ slot: 0, look: { light_turn: 90, focal_length: 50 } });
+  const kept = page.last("keep_view").look;
+
+  localStorage.clear(); // another browser
+  const other = await open("small.recipe", (message) => (message.kind === "views" ? { ...message, views: { 0: kept, 2: kept } } : message));
+  expect(other.app.viewer.view.focalLength).toBeCloseTo(50, 1);
+  expect(other.app.viewer.stage.lights.turn).toBe(90);
+  control("Camera, light and sheet").click();
+  expect(control("Recall bookmark 2").hidden).toBe(false);
 });
