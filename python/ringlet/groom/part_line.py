@@ -56,15 +56,22 @@ class PartLine(Section):
         middle:          centre of the scalp [m]
         helper:          returns the helper curves of a name for a setting
         """
+        across, side, distance = self.sides(places, normals, middle, helper)
+        return side[:, None] * across, 0.5 ** (distance / self.falloff)
+
+    def sides(
+        self, places: NDArray, normals: NDArray, middle: NDArray, helper: Callable[[Names, str], Curves]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """Unit directions across it, shape (n, 3), sides of places, −1 or 1, and their distances [m], shape (n,)."""
         if self.curve is None:
             across = np.array(self.across) / max(float(np.linalg.norm(self.across)), 1e-12)
-            side = (places - middle) @ across - self.offset
-            return np.sign(side)[:, None] * across, 0.5 ** (np.abs(side) / self.falloff)
+            off = (places - middle) @ across - self.offset
+            return np.broadcast_to(across, places.shape), np.sign(off), np.abs(off)
         foot, along = _nearest(places, helper(self.curve, "curve"))
         across = np.cross(along, normals)
         across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-12)
         side = np.sign(np.sum((places - foot) * across, axis=1))
-        return side[:, None] * across, 0.5 ** (np.linalg.norm(places - foot, axis=1) / self.falloff)
+        return across, side, np.linalg.norm(places - foot, axis=1)
 
 
 def _nearest(places: NDArray, lines: Curves) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -94,6 +94,7 @@ class Run:
             self.shapes,
             locks.sections,
             locks.density,
+            None if isinstance(self.recipe.guides, Drawn) else self.recipe.guides.part_line,
         )
 
     def _apply(self, operator: Operator, context: Context) -> None:

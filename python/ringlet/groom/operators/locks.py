@@ -144,9 +144,8 @@ class Locks(Operator):
         guide_normal = scalp.frames(curves)[:, :, 2]
         normal = _core.root_frames(scalp.points, scalp.triangles, triangle, barycentric)[1][:, :, 2]
 
-        near = min(self.neighbours, len(curves))
-        distance, index = KDTree(curves.roots).query(roots, k=near)
-        distance, index = distance.reshape(count, near), index.reshape(count, near)
+        distance, index = self._nearest(curves, guide_normal, roots, normal, context)
+        near = index.shape[1]
         rotated = np.empty((near, count, self.shape_points, 3))
         for k in range(near):
             rotated[k] = local[index[:, k]] @ _smallest_rotation(guide_normal[index[:, k]], normal).transpose(0, 2, 1)
@@ -158,6 +157,29 @@ class Locks(Operator):
         length = np.sum(weight * lengths[index], axis=1)
         blended *= (length / np.maximum(arc_lengths(blended)[:, -1], 1e-9))[:, None, None]
         return roots[:, None] + blended
+
+    def _nearest(
+        self, guides: Curves, guide_normals: NDArray, roots: NDArray, normals: NDArray, context: Context
+    ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """Distances [m] and rows of the guides that are nearest to roots, shape (locks, neighbours) each.
+
+        Close to a part line only guides of the same side count, so that hair parts along the line and not between
+        guides.
+        """
+        count = min(self.neighbours, len(guides))
+        distance, index = (np.asarray(found).reshape(-1, count) for found in KDTree(guides.roots).query(roots, k=count))
+        if (part := context.part_line) is None:
+            return distance, index
+        given = context.scalp.middle, context.helper
+        _, side, away = part.sides(roots, normals, *given)
+        _, of_guides, _ = part.sides(np.asarray(guides.roots, np.float64), guide_normals, *given)
+        for one in (-1.0, 1.0):
+            rows = np.flatnonzero((side == one) & (away < part.falloff))
+            own = np.flatnonzero(of_guides == one)
+            if len(own) >= count and len(rows):
+                off, near = KDTree(guides.roots[own]).query(roots[rows], k=count)
+                distance[rows], index[rows] = off.reshape(-1, count), own[near.reshape(-1, count)]
+        return distance, index
 
 
 def _smallest_rotation(a: NDArray, b: NDArray) -> NDArray[np.float64]:

@@ -19,6 +19,7 @@ from ringlet.data.random import Random
 from ringlet.data.settings import did_you_mean
 from ringlet.deform.orientation import outward
 from ringlet.groom.helpers import Names
+from ringlet.groom.part_line import PartLine
 from ringlet.groom.scalp import Scalp
 from ringlet.groom.sections import Sections
 
@@ -39,6 +40,7 @@ class Context:
     shapes:      the locks before the curl operator; None up to it
     sections:    settings of the sections of the scalp; None without
     density:     name of the painted density of locks; None without
+    part_line:   where guides part; None without
     """
 
     seed: int
@@ -50,6 +52,7 @@ class Context:
     shapes: Curves | None = None
     sections: Sections | None = None
     density: str | None = None
+    part_line: PartLine | None = None
 
     def random(self, setting: str = "") -> Random:
         """Random numbers of one setting of this operator."""
