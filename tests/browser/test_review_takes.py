@@ -21,6 +21,7 @@ def kept(review: Review) -> None:
 def test_a_take_is_kept_and_plays_and_becomes_a_shot_that_is_compared_by_a_wipe(opened: Any, folder: Path) -> None:
     review: Review = opened(pixels=0.1)
     kept(review)
+    review.page.keyboard.press("t")
     review.page.get_by_role("button", name="Play the take").click()
     review.until("ringlet.viewer.hair.b.motions && ringlet.viewer.looks.arrangement === 'flip'")
     seen = review.get("Array.from(ringlet.viewer.hair.b.motions)")

@@ -272,7 +272,9 @@ class Session:
         """Keeps the last seconds of live hair; raises UserError where the groom that moved is not the open one."""
         groom = self._viewport.made("take").groom
         current = self._viewport.revision == self.files.recipe.revision
-        self._review.keep_take(message, self._live.recent.take(groom if current else None))
+        motion = self._live.recent.take(groom if current else None)
+        self._review.keep_take(message, motion)
+        self.pages.notice(f"{motion.seconds:.1f} s of live hair are kept among the snapshots (T)")
 
     def _make_shot(self, message: protocol.MakeShot, page: Page) -> None:
         """Writes a shot of a take and opens it; it starts, compared with the take, once its groom is made."""

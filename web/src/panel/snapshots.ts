@@ -52,7 +52,7 @@ export class Snapshots {
     if (this.waiting) return;
     const picture = thumbnail(this.viewer).toDataURL("image/png").split(",")[1];
     model.say({ kind, author: ownName(), look: this.look.state, picture });
-    this.tray.open(this.tab);
+    if (kind === "take_snapshot") this.tray.open(this.tab); // it would cover the controls of live hair
   }
 
   private update(): void {

@@ -61,7 +61,8 @@ class HeadClip:
         steps = np.arange(take.steps[-1] + 1)
         poses = np.concatenate([_poses(take.heads), take.trunks], axis=1)
         taken = np.stack([np.interp(steps, take.steps, of) for of in poses.T], axis=1)
-        before = np.concatenate([_poses(take.before[:, :12]), take.before[:, 12:]], axis=1)[-round(LEAD * float(take.fps)) :]
+        before = np.concatenate([_poses(take.before[:, :12]), take.before[:, 12:]], axis=1)
+        before = before[-round(LEAD * float(take.fps)) :]
         resting = np.flatnonzero((np.abs(before) < AT_REST).all(axis=1))
         if len(resting):
             before = before[resting[-1] :]
