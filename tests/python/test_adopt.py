@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import small_example
@@ -31,6 +33,7 @@ from ringlet import (
 )
 
 LOCKS, PER_LOCK = 40, 6
+EXAMPLES = Path(__file__).parents[2] / "examples"
 
 RECIPE = f"""
 ringlet = 2
@@ -158,6 +161,40 @@ def test_clumps_are_found_by_the_shapes_of_hairs(known):
     assert pairs.shape[1] == LOCKS
     assert find_clumps(points, hairs.lengths(), hairs.curve).source == "lock"
     assert len(find_clumps(points, hairs.lengths(), {}, 7)) <= 7
+
+
+@pytest.mark.parametrize(("kind", "exactly"), [("3A", 79), ("3B", 78)])
+def test_clumps_of_wide_curls_are_found_by_gaps(kind, exactly):
+    """Distances within locks and between them overlap over the head, but hardly around one hair."""
+    groom = build_groom(read_recipe(EXAMPLES / f"types/{kind}.recipe.toml", {"locks.count": 98}))
+    groom.hairs = {name: value for name, value in groom.hairs.items() if name != "density"} | {"per_lock": 8}
+    hairs = build_hairs(groom).curves
+    lock = hairs.curve["lock"]
+    clumps = find_clumps(grid(resampled(hairs, int(hairs.counts.max()))), hairs.lengths(), {})
+    sizes = np.bincount(clumps.of)
+    whole = [len(set(clumps.of[lock == row])) == 1 and sizes[clumps.of[lock == row][0]] == 8 for row in set(lock)]
+    assert clumps.source == "shape" and sum(whole) >= 0.95 * exactly
+    assert abs(len(clumps) / len(groom.locks) - 1.0) < 0.06
+
+
+def test_hair_without_gaps_has_no_clumps():
+    rng = np.random.default_rng(0)
+    points = np.zeros((400, 32, 3))
+    points[:, :, [0, 2]] = 0.2 * rng.random((400, 1, 2))
+    points[:, :, 1] = np.linspace(0.0, 0.1, 32)
+    points += rng.normal(0.0, 0.002, (400, 1, 3)) * np.linspace(0.0, 1.0, 32)[None, :, None]
+    assert find_clumps(points, np.full(400, 0.1), {}).source == "each"
+
+
+def test_strands_that_bend_are_no_coils():
+    """Strands as games have them: one to two bends of some centimetres, and no turns."""
+    rng = np.random.default_rng(1)
+    s = np.linspace(0.0, 1.0, 32)
+    waves = [
+        np.stack([a * np.sin(np.pi * (1.0 + b) * s), 0.2 * s, c * np.sin(np.pi * (1.0 + d) * s + e)], axis=1)
+        for a, b, c, d, e in rng.random((300, 5)) * [0.02, 1.0, 0.02, 1.0, 3.0]
+    ]
+    assert fit_coils(grid(resampled(Curves.from_list(waves), 32))).coiled.sum() == 0
 
 
 def mane(path, curly=False):

@@ -2,7 +2,8 @@
 
 The distance of two hairs is the root mean square of the distances between points at the same place along them, towards
 the tip more than at the root. Clumps are the components that remain of the minimum spanning tree of mutual
-reachability distances (Campello et al. 2013) when its long edges are cut.
+reachability distances (Campello et al. 2013) when its long edges are cut. Where these edges are of one kind, as between
+wide curls, hairs are of one clump that are among each other's neighbours before the largest gap of their distances.
 """
 
 from __future__ import annotations
@@ -22,6 +23,8 @@ PLACES = 12  # points of a hair that are compared
 NEIGHBOURS = 12  # of a hair, among which edges of the tree are sought
 CORE = 3  # the neighbour whose distance is the core distance of a hair
 APART = 3.0  # least ratio of the distances between and within clumps
+GAP = 1.25  # least ratio of the distances of a neighbour and of the next one at the end of a clump
+LARGEST = 0.25  # of the hairs, which a clump may have: without gaps nearly all hairs are one
 NAMES = ("guide_curve_index", "clumpid", "lock", "guide_id")  # attributes that number clumps
 MOST_LOCKS = 5000  # hairs without clumps that become a lock each; more are divided into as many
 
@@ -97,7 +100,7 @@ def _features(points: Array) -> Array:
 
 
 def _by_shape(features: Array) -> NDArray[np.int64] | None:
-    """Components of the tree without its long edges; None where its edges are of one kind."""
+    """Components of the tree without its long edges, or by gaps; None where there are none."""
     hairs = len(features)
     distance, index = map(np.asarray, KDTree(features).query(features, k=min(NEIGHBOURS + 1, hairs)))
     core = distance[:, min(CORE, distance.shape[1] - 1)]
@@ -107,10 +110,29 @@ def _by_shape(features: Array) -> NDArray[np.int64] | None:
     tree = minimum_spanning_tree(coo_array((length, (start, end)), shape=(hairs, hairs)).tocsr()).tocoo()
     cut = _cut(np.log(tree.data))
     if cut is None:
-        return None
+        return _by_gaps(features, distance[:, 1:], index[:, 1:])
     kept = tree.data <= np.exp(cut)
     graph = coo_array((tree.data[kept], (tree.row[kept], tree.col[kept])), shape=(hairs, hairs))
     of = connected_components(graph, directed=False)[1].astype(np.int64)
+    return _without_strays(features, of)
+
+
+def _by_gaps(features: Array, distance: Array, index: NDArray[np.integer]) -> NDArray[np.int64] | None:
+    """Components of hairs that are neighbours of each other before a gap; None where nearly all hairs are one.
+
+    distance, index: of the neighbours of each hair, the nearest first, shape (hairs, k)
+    """
+    hairs, most = distance.shape
+    step = distance[:, 1:] / np.maximum(distance[:, :-1], 1e-12)
+    step[:, : CORE - 1] = 0.0  # a hair and its nearest neighbours are of one clump
+    end = step.argmax(axis=1)
+    size = np.where(step.max(axis=1) > GAP, end + 1, most)
+    before = np.arange(most) < size[:, None]
+    pairs = np.repeat(np.arange(hairs), size), index[before]
+    near = coo_array((np.ones(len(pairs[0])), pairs), shape=(hairs, hairs)).tocsr()
+    of = connected_components(near.minimum(near.T), directed=False)[1].astype(np.int64)
+    if np.bincount(of).max() > LARGEST * hairs:
+        return None
     return _without_strays(features, of)
 
 

@@ -22,6 +22,8 @@ AROUND = 8  # steps up and down from the proposal
 LEAST_GAIN = 0.35  # share of the deviation from a smooth line that a coil must explain
 LEAST_SHARE = 0.5  # of the radius of a coil, by which a smooth line must miss the lock (root mean square)
 LEAST_RADIUS = 2e-4  # [m] a narrower coil is frizz
+LEAST_WIDTH = 0.085  # over the pitch: what winds less is a bend, and hardly longer than its line
+)
 ENDS = 0.12  # part of a lock at either end that is left out of the averages
 LONGEST = 1.05  # centre line, relative to the lock that winds about it
 PADDED = 8  # zero-padding of the spectrum
@@ -169,6 +171,7 @@ def _measured(points: Array, center: Array, around: Array, turns: Array) -> Coil
     coiled &= np.abs(slope) * run[:, -1] > 2.0 * np.pi * FEWEST_TURNS
     coiled &= run[:, -1] < LONGEST * np.linalg.norm(np.diff(points, axis=1), axis=2).sum(axis=1)
     pitch = 2.0 * np.pi / np.maximum(np.abs(slope), 1e-6)
+    coiled &= 2.0 * radius > LEAST_WIDTH * pitch
     center = np.where(coiled[:, None, None], center, points)
     return Coils(
         _rooted(center, points[:, 0], pitch),
