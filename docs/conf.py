@@ -13,7 +13,7 @@ from docstrings import as_list
 from figures import write_figures
 from measured import Growth, Measured, Recorded
 from motion_figure import write_motion
-from plots import write_convergence, write_memory, write_release, write_speed_up, write_tips
+from plots import write_convergence, write_live_tips, write_memory, write_release, write_speed_up, write_tips
 from reference import write_references
 from theory import write_theory
 
@@ -50,6 +50,7 @@ def write_generated(folder):
         write_motion: folder / "figure_motion.svg",
         write_memory: folder / "memory.svg",
         write_tips: folder / "tips.svg",
+        write_live_tips: folder / "live_tips.svg",
         write_speed_up: folder / "speed_up.svg",
         write_benchmarks: folder / "benchmarks.md",
     }

@@ -27,6 +27,7 @@ from releases import PRESCRIBED, scenes
 RESULTS = Path(__file__).parents[1] / "bench" / "results"
 FRAMES = RESULTS / "frames.json"
 TIPS = RESULTS / "tips_threads_1.json"
+LIVE = RESULTS / "live_locks_300_threads_1.json"
 SERIAL = RESULTS / "serial_turns_3.json"
 AT_ONE_RESOLUTION = {"plucked-coil", "bounce", "friction", "push", "nest"}  # cases without a panel, which take long
 RESOLUTION = re.compile(r"(?P<curve>.*), (?P<n>\d+) (edges|vertices a turn)$")
@@ -104,6 +105,16 @@ def write_tips(path: Path) -> None:
         for k, trial in enumerate(result["trials"]):
             axes.plot(frames, trial["tips_mm"], color=colors(k), lw=1.2, label=f"{trial['iterations']} iterations")
         axes.set_ylim(0, None)
+
+
+def write_live_tips(path: Path) -> None:
+    """How the median tip moves in the nod, live and in a shot in contact, along the line on which it moves most."""
+    tips = json.loads(LIVE.read_text())["result"]["tips_mm"]
+    frames = 1 + np.arange(len(tips["shot"]))
+    with chart(path, "frame", "motion of the median tip [mm]") as axes:
+        axes.plot(frames, tips["shot"], color="black", lw=2.5, alpha=0.6, label="in contact, 12 iterations")
+        axes.plot(frames, tips["default"], "--", color="#2a5b8c", lw=1.2, label="live, by default")
+        axes.plot(frames, tips["calibrated"], color="#8c3b2a", lw=1.5, label="live, calibrated")
 
 
 def write_speed_up(path: Path) -> None:

@@ -168,6 +168,7 @@ class Live:
         if not (np.isfinite(contact) and contact >= 0.0):
             raise UserError(f"live: contact is {contact}; must be at least 0")
         self._contact = float(contact)
+        self._hanging = HangingRods(self._rods, self._wire(), self._groomed_gravity)  # it carries more or less itself
         self._set_strands()
 
     @property
