@@ -23,7 +23,6 @@ LEAST_GAIN = 0.35  # share of the deviation from a smooth line that a coil must 
 LEAST_SHARE = 0.5  # of the radius of a coil, by which a smooth line must miss the lock (root mean square)
 LEAST_RADIUS = 2e-4  # [m] a narrower coil is frizz
 LEAST_WIDTH = 0.085  # over the pitch: what winds less is a bend, and hardly longer than its line
-)
 ENDS = 0.12  # part of a lock at either end that is left out of the averages
 LONGEST = 1.05  # centre line, relative to the lock that winds about it
 PADDED = 8  # zero-padding of the spectrum
