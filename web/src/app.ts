@@ -101,7 +101,7 @@ export class App {
 
     // What is over the picture goes with it
     const pointer = new PresenterPointer(model, viewer);
-    const head = new HeadHandle(model, viewer);
+    const head = new HeadHandle(model, viewer, () => this.tools.busy);
     picture.append(head.element, this.lock.handles, this.tools.brush.ring, pointer.element, this.render.element, references.element, notes.marks);
     viewer.onPaint = () => [this.lock, pointer, notes, head].forEach((one) => one.place());
     viewer.onDraw = (statistics) => this.status.drew(statistics);

@@ -100,6 +100,16 @@ test("a pointer that leaves the picture or is lost, and a hand that is taken awa
   expect(control("Hand").getAttribute("aria-pressed")).toBe("false");
 });
 
+test("the handle of the head is not in the way of a hand", async () => {
+  const page = await withHand();
+  const handle = find<HTMLElement>(".head-handle");
+  page.app.viewer.onPaint();
+  expect(handle.hidden).toBe(true);
+  control("Hand").click();
+  page.app.viewer.onPaint();
+  expect(handle.hidden).toBe(false);
+});
+
 test("the hand is put away when hair is at rest again", async () => {
   const page = await withHand();
   page.hear({ kind: "live", on: false, fps: 0, goes_on: [], wind: "", contact: "" });

@@ -28,6 +28,8 @@ export class HeadHandle {
   constructor(
     private readonly model: Model,
     private readonly viewer: Viewer,
+    /** Whether a tool has the pointer: the handle would be in its way. */
+    private readonly busy: () => boolean,
   ) {
     const { element } = this;
     element.addEventListener("pointerdown", (event) => {
@@ -57,7 +59,7 @@ export class HeadHandle {
     const { element, viewer, model } = this;
     const { box } = viewer.hair.a;
     const at = box.isEmpty() ? null : viewer.seenAt(box.getCenter(new Vector3()).setY(box.max.y));
-    element.hidden = !model.live.fps || !model.role.leads || !at;
+    element.hidden = !model.live.fps || !model.role.leads || !at || this.busy();
     if (!at || element.hidden) {
       this.letGo();
       return;
