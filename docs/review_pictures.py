@@ -4,7 +4,7 @@
     .venv/bin/python docs/review_pictures.py lock people  those of these names
     .venv/bin/python docs/review_pictures.py --states FOLDER   states of the page in five sizes, to be looked at
 
-``people`` is a movie of a review of two pages. Needs playwright and Chromium.
+``people`` is a movie of a review of two pages, ``moving`` one of live hair. Needs playwright and Chromium.
 """
 
 from __future__ import annotations
@@ -43,6 +43,7 @@ FEW = {
     r"frames = \[1, 30\]": "frames = [1, 4]",
 }  # where panels are looked at
 SOME = {r"count = 1050": "count = 420", r"per_lock = 36": 'per_lock = 8\nwidth = "0.3 mm"'}  # few and thick, in a movie
+RATE, EACH = 24.0, 3  # steps a second of live hair, and one in so many that a movie shows
 TIMELESS = "[data-number=draw], [data-number=groom], .live-line .rate { display: none }"  # of a busy machine
 
 
@@ -180,7 +181,7 @@ def tablet(browser: Browser) -> Image.Image:
 
 
 class Movie:
-    """Two pages next to each other, as a movie of stills."""
+    """Pages next to each other, as a movie of stills."""
 
     def __init__(self, *pages: Page) -> None:
         self.pages = pages
@@ -189,10 +190,10 @@ class Movie:
 
     def still(self, ms: int) -> None:
         """Adds the pages as they are, for a time [ms]."""
-        both = Image.new("RGB", (1600, 512))
+        all_pages = Image.new("RGB", (800 * len(self.pages), 512))
         for k, page in enumerate(self.pages):
-            both.paste(page.taken().resize((800, 512), Image.Resampling.LANCZOS), (800 * k, 0))
-        self.stills.append(both)
+            all_pages.paste(page.taken().resize((800, 512), Image.Resampling.LANCZOS), (800 * k, 0))
+        self.stills.append(all_pages)
         self.times.append(ms)
 
     def save(self, path: Path) -> None:
@@ -250,8 +251,34 @@ def people(browser: Browser) -> Movie:
         return movie
 
 
+def moving(browser: Browser) -> Movie:
+    """Live hair that nods, turns and is blown at. Each third step is drawn, however long that takes."""
+    with served("curls.recipe.toml", SOME) as server:
+        page = opened(browser, server, SMALL, "dark")
+        page.page.keyboard.press("l")
+        page.until("ringlet.model.live.fps && ringlet.live.step")
+        page.get("(window.steps = [], ringlet.live.take = (step) => { steps.push(step); })")
+        for say, seconds in (
+            ("{ kind: 'move_head', motion: 'nod' }", 1.8),
+            ("{ kind: 'move_head', motion: 'turn' }", 1.6),
+            ("{ kind: 'blow', side: 'left' }", 1.2),
+        ):
+            first = page.get("steps.length ? steps.at(-1).step : 0")
+            page.get(f"ringlet.model.say({say})")
+            page.until(f"steps.length && steps.at(-1).step >= {first + round(RATE * seconds)}", 300.0)
+        movie, rows = Movie(page), page.get("steps.map((step) => step.step)")
+        last = rows[0] - EACH
+        for row, step in enumerate(rows):
+            if step - last < EACH:
+                continue
+            page.get(f"(ringlet.live.step = steps[{row}], ringlet.live.show())")
+            movie.still(round(1000 * (step - last) / RATE))
+            last = step
+        return movie
+
+
 PICTURES: dict[str, Callable[[Browser], Image.Image | Movie]] = {
-    made.__name__: made for made in (review, lock, sculpt, shot, live, tablet, people)
+    made.__name__: made for made in (review, lock, sculpt, shot, live, tablet, people, moving)
 }
 
 SIZES = (DESKTOP, WIDE, TABLET, LYING, PHONE)

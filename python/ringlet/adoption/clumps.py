@@ -102,7 +102,8 @@ def _features(points: Array) -> Array:
 def _by_shape(features: Array) -> NDArray[np.int64] | None:
     """Components of the tree without its long edges, or by gaps; None where there are none."""
     hairs = len(features)
-    distance, index = map(np.asarray, KDTree(features).query(features, k=min(NEIGHBOURS + 1, hairs)))
+    found, rows = KDTree(features).query(features, k=min(NEIGHBOURS + 1, hairs))
+    distance, index = np.asarray(found, np.float64), np.asarray(rows, np.int64)
     core = distance[:, min(CORE, distance.shape[1] - 1)]
     start = np.repeat(np.arange(hairs), distance.shape[1] - 1)
     end = index[:, 1:].ravel()

@@ -115,7 +115,8 @@ class Sections(Section):
         bound = {"root_triangle": triangle[nearest], "root_barycentric": barycentric[nearest]}
         roots = Curves(places[nearest], np.arange(len(ids) + 1, dtype=np.int32), ids.astype(np.int64), bound)
         chosen = self.mask.weights(roots, scalp.mesh, Random(seed, "locks/sections"), "locks.sections.mask")[:, 0] > 0.5
-        areas = np.bincount(section, minlength=len(ids)) * (scalp.area / len(painted))
+        area = float(scalp.area) / len(painted)
+        areas = np.bincount(section, minlength=len(ids)).astype(np.float64) * area
         return Division(self, chart, seed, merged, roots, areas, chosen, grows, drawn)
 
     def _cells(self, chart: Chart, places: NDArray, seed: int, drawn: DrawnPartLines | None) -> Cells:

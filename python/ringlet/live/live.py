@@ -314,8 +314,9 @@ class Live:
                 planes.add(grid, start, end, positions, np.where(above, self._clearance, -np.inf))
             planes.add(grid, *of_trunk, positions, np.where(above & of_head, -np.inf, self._clearance))
         if touch is not None and touch.does == "pat":
-            palm = [self._outside(at, touch.radius, pose) for at, pose in ((self._hand.start, start), (touch.at, end))]
-            planes.add_ball(*palm, touch.radius, PRESSED, positions, self._clearance)
+            begin = self._outside(self._hand.start, touch.radius, start)
+            after = self._outside(touch.at, touch.radius, end)
+            planes.add_ball(begin, after, touch.radius, PRESSED, positions, self._clearance)
         near = (planes.gaps < NEAR) & (self._held == 0)
         stiffness = np.where(near, FIRM / self.dt**2 * self._strands.masses, 0.0)
         return planes.normals, planes.offsets, stiffness

@@ -136,7 +136,10 @@ class _Names:
             curve, count = group.hairs.curve, len(group.hairs)
             ids = curve.get("guide_id", curve.get("lock", group.hairs.ids))
             rows = curve.get(GROOM, np.zeros(count, np.int32))
-            named = [grooms[row] if row < len(grooms) else f"hair_{row}" if row else "hair" for row in rows.tolist()]
+            named = [
+                grooms[row] if row < len(grooms) else f"hair_{row}" if row else "hair"
+                for row in map(int, rows.tolist())
+            ]
             numbered = [
                 [names.setdefault(name, len(names)) for name in of]
                 for names, of in ((locks, [f"lock_{id}" for id in ids.tolist()]), (things, named))

@@ -167,18 +167,20 @@ class Locks(Operator):
         guides.
         """
         count = min(self.neighbours, len(guides))
-        distance, index = (np.asarray(found).reshape(-1, count) for found in KDTree(guides.roots).query(roots, k=count))
+        found, rows = KDTree(guides.roots).query(roots, k=count)
+        distance: NDArray[np.float64] = np.asarray(found).reshape(-1, count)
+        index: NDArray[np.int64] = np.asarray(rows).reshape(-1, count)
         if (part := context.part_line) is None:
             return distance, index
         given = context.scalp.middle, context.helper
         _, side, away = part.sides(roots, normals, *given)
         _, of_guides, _ = part.sides(np.asarray(guides.roots, np.float64), guide_normals, *given)
         for one in (-1.0, 1.0):
-            rows = np.flatnonzero((side == one) & (away < part.falloff))
+            here = np.flatnonzero((side == one) & (away < part.falloff))
             own = np.flatnonzero(of_guides == one)
-            if len(own) >= count and len(rows):
-                off, near = KDTree(guides.roots[own]).query(roots[rows], k=count)
-                distance[rows], index[rows] = off.reshape(-1, count), own[near.reshape(-1, count)]
+            if len(own) >= count and len(here):
+                off, near = KDTree(guides.roots[own]).query(roots[here], k=count)
+                distance[here], index[here] = off.reshape(-1, count), own[near.reshape(-1, count)]
         return distance, index
 
 
