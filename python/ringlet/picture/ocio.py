@@ -7,6 +7,7 @@ configuration, and EXR files are in its role ``scene_linear``.
 from __future__ import annotations
 
 import os
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -43,7 +44,7 @@ def scene_linear(light: NDArray[np.floating]) -> NDArray[np.float32]:
 
 def _config() -> tuple[Any, Any]:
     try:
-        import PyOpenColorIO as ocio  # pyright: ignore[reportMissingImports]
+        ocio = import_module("PyOpenColorIO")
     except ImportError:
         raise UserError(
             f"OCIO is {configured()}, but OpenColorIO is not installed; try: pip install 'ringlet[ocio]', or unset the "
