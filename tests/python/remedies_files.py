@@ -578,7 +578,7 @@ GROOMS = [
         **drawn(STANDING + (0, 0.02, 0))), in_order(on_mesh(flat_scalp(), "[guides]\nfile = 'g.obj'\n",
         **drawn(STANDING)), on_mesh(flat_scalp(), "[guides]\nfile = 'g.obj'\ntolerance = 3\n", **drawn(STANDING + (0,
         0.02, 0))))),
-    Advice("locks.density '{}' is 0 all over {}; paint where hair is to grow", on(bent(maps={"m": np.zeros((
+    Advice("{} is 0 all over {}; paint where hair is to grow", on(bent(maps={"m": np.zeros((
         len(ROUND.triangles), 3))}), "[locks]\ndensity = 'm'\n[locks.sections]\nsize = 6\nstrands = 2\n"),
         on(painted(1.0), "[locks]\ndensity = 'm'\n[locks.sections]\nsize = 6\nstrands = 2\n")),
     Advice("{}: lock {} belongs to no groom; there are: {}", in_order(named_grooms("all.toml",

@@ -65,7 +65,7 @@ def test_operators_of_a_base_are_changed_and_removed_by_name(extended: Path):
     "message",
     [
         {"kind": "set", "changes": [[["hairs"], None]]},
-        {"kind": "set", "changes": [[["locks", "points"], None]]},
+        {"kind": "set", "changes": [[["guides", "length"], None]]},
         {"kind": "set", "changes": [[["curl", "width"], None]]},
         {"kind": "set", "changes": [[["curl"], None]]},
         {
