@@ -14,7 +14,7 @@ from small_example import RECIPE, write_example
 
 import ringlet
 from ringlet import Curves, Groom, Live, Material, Solver, Strands, Touch, UserError, _core
-from ringlet.live import live as live_module
+from ringlet.live import bodies
 
 Array = NDArray[np.float64]
 
@@ -249,7 +249,7 @@ def test_friction_holds_hair_on_what_presses_on_it(groom: Groom, monkeypatch: py
     ball = replace(groom.scalp, points=0.5 * groom.scalp.points + tips[lowest] - (0.0, 0.07, 0.0))
 
     def slips(friction: float) -> float:
-        monkeypatch.setattr(live_module, "FRICTION", friction)
+        monkeypatch.setattr(bodies, "FRICTION", friction)
         live = Live(groom, clothes=[ball])
         for height in np.linspace(0.0, 0.05, 21):
             live.trunk = turned(0.0, (0.0, float(height), 0.0))

@@ -1,4 +1,4 @@
-"""Rotations: the one that fits points best, and rotation vectors."""
+"""Rotations, rotation vectors, and rigid motions of points."""
 
 from __future__ import annotations
 
@@ -37,3 +37,13 @@ def rotation_vector(matrix: Array) -> Array:
     axis = np.array([matrix[2, 1] - matrix[1, 2], matrix[0, 2] - matrix[2, 0], matrix[1, 0] - matrix[0, 1]])
     sine = float(np.linalg.norm(axis))
     return np.zeros(3) if sine < 1e-12 else np.arctan2(sine, np.trace(matrix) - 1.0) / sine * axis
+
+
+def moved(points: Array, pose: Array) -> Array:
+    """Points (..., n, 3) after rigid motions (..., 4, 4) that act on columns; one of each may stand for all."""
+    return points @ pose[..., :3, :3].swapaxes(-1, -2) + pose[..., None, :3, 3]
+
+
+def in_frame(points: Array, pose: Array) -> Array:
+    """Points (..., n, 3) in the frames of rigid motions (..., 4, 4): what ``moved`` takes to them."""
+    return (points - pose[..., None, :3, 3]) @ pose[..., :3, :3]

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ringlet import sim
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Clip, Mesh
-from ringlet.data.rigid import rotation_matrix
+from ringlet.data.rigid import in_frame, moved, rotation_matrix
 from ringlet.live.live import GRAVITY, Live, default_contact
 from ringlet.live.neck import neck
 from ringlet.live.rods import VERTICES, Rods
@@ -96,10 +96,11 @@ class Calibration:
             contact=self.touching,
         )
         scalp = sample.scalp
-        clip = Clip(frames, _moved(np.asarray(scalp.points, np.float64), heads), self.fps)
+        clip = Clip(frames, moved(np.asarray(scalp.points, np.float64), heads), self.fps)
         obstacles = [sim.Obstacle(scalp, clip)]
         obstacles += [sim.Obstacle(mesh, Clip(frames[:1], mesh.points[None], self.fps)) for mesh in self.clothes]
-        return _of_heads(sim.simulate(shot, sample, clip, obstacles=obstacles).points, heads)
+        points = sim.simulate(shot, sample, clip, obstacles=obstacles).points.astype(np.float64)
+        return in_frame(points, heads)
 
 
 def calibrate(
@@ -169,19 +170,9 @@ def _live(live: Live, heads: Array) -> Array:
     for live.head in heads:
         live.step()
         points.append(live.positions)
-    return _of_heads(np.array(points), heads)
+    return in_frame(np.array(points), heads)
 
 
 def _swing(tips: Array) -> float:
     """How far tips are from where they begin, shape (frames, count, 3): the root of the mean square [m]."""
     return float(np.sqrt(np.mean(np.sum((tips - tips[0]) ** 2, axis=2))))
-
-
-def _moved(points: Array, heads: Array) -> Array:
-    """Points (n, 3) with each pose of the head, shape (frames, n, 3)."""
-    return np.einsum("fij,nj->fni", heads[:, :3, :3], points) + heads[:, None, :3, 3]
-
-
-def _of_heads(points: NDArray[np.floating], heads: Array) -> Array:
-    """Points (frames, n, 3) as the head carries them, relative to where it was groomed."""
-    return np.einsum("fji,fnj->fni", heads[:, :3, :3], points - heads[:, None, :3, 3])

@@ -15,7 +15,8 @@ from ringlet import _core
 from ringlet.data.errors import UserError
 from ringlet.data.groom import STRAND_RADIUS, Groom
 from ringlet.data.mesh import Mesh
-from ringlet.data.rigid import rotation_vector
+from ringlet.data.rigid import moved, rotation_vector
+from ringlet.live.bodies import Bodies, Palm, Poses
 from ringlet.live.hanging import HangingRods
 from ringlet.live.neck import neck
 from ringlet.live.rods import HELD, VERTICES, Rods, Wire, places, vertex_places
@@ -25,7 +26,7 @@ from ringlet.shot.solver import Solver
 from ringlet.sim.core import Vector
 from ringlet.sim.cores import Cores
 from ringlet.sim.shot_strands import WANTED
-from ringlet.sim.strands import Planes, Springs, Strands
+from ringlet.sim.strands import Springs, Strands
 from ringlet.sim.worn import worn_factors
 
 Array = NDArray[np.float64]
@@ -37,12 +38,6 @@ SOLVER = Solver(newton=2, tolerance=1e-5, integrator="backward_euler")
 
 CELL, MARGIN = 0.02, 0.1  # of the grid through which neighbours share motion, and how far it goes beyond the hair [m]
 SHARE, KEEP = 0.7, 0.9  # see src/ringlet/live/shared_velocities.h
-
-DISTANCES, BAND = 0.006, 0.02  # cell of the grids of distances to bodies, and where these are the closest [m]
-CLEARANCE = 5e-4  # of a coil from them [m]
-FIRM = 1000.0  # stiffness of a body, relative to the inertia of a vertex in a step
-FRICTION, STICK = 0.3, 5e-4  # Coulomb's μ of hair on them, and slip in a step below which it sticks [m]
-NEAR = 0.1  # from here on a body may be met in a step [m]
 
 ACROSS = 1.0, 0.3, 0.2  # some direction across the roots of rods
 
@@ -98,8 +93,7 @@ class Live:
         self._wind = _vector(wind, "wind")
         self._head = self._pose = np.eye(4)
         self._trunk: Array | None = None
-        self._bodies, self._clothes = (groom.scalp,) if bodies is None else tuple(bodies), tuple(clothes)
-        self._grids: list[tuple[_core.DistanceGrid, bool]] = []
+        self._bodies = Bodies((groom.scalp,) if bodies is None else bodies, clothes)
         self._hand = Hand()
         self._set_groom(groom)
         self.reset()
@@ -129,7 +123,7 @@ class Live:
     @property
     def clothes(self) -> tuple[Mesh, ...]:
         """The meshes that go with the trunk as a whole."""
-        return self._clothes
+        return self._bodies.clothes
 
     @property
     def gravity(self) -> Vector:
@@ -257,36 +251,37 @@ class Live:
         note = self._catch_up()
         touch, cut_off = self._hand.begin()
         note = note or cut_off
-        start, end = self._pose, self._head
-        held, planes = _moved(self._rods.points, end), self._planes(start, end, touch)
-        taken_along = self._taken_along(self._strands.positions, start, end)
-        springs = self._hand.springs(touch, self._touched(held)) if touch else None
+        poses = Poses(self._pose, self._head, self._trunk_pose, self._trunk_end)
+        before, held = self._strands.positions.copy(), moved(self._rods.points, poses.head_end)
+        inertia = np.where(self._held == 0, self._strands.masses / self.dt**2, 0.0)
+        planes = self._bodies.planes(before, inertia, poses, self._palm(touch, poses))
+        springs = self._hand.springs(touch, self._touched(held, inertia)) if touch else None
         report = self._strands.step(
             held,
             self.dt,
             gravity=self._gravity,
             wind=self._wind,
-            forces=self._support @ end[:3, :3].T,
+            forces=self._support @ poses.head_end[:3, :3].T,
             solver=SOLVER,
             planes=planes,
-            springs=_either(springs, (taken_along, self._friction)),
+            springs=_either(springs, self._bodies.friction(before, poses)),
         )
         self._hand.end()
         positions, velocities = self._strands.positions, self._strands.velocities
         if planes is not None:
-            self._rub(planes, taken_along)
-        self._grid.share(positions, self._strands.masses, self._held, start, end, self.dt, SHARE, KEEP, velocities)
-        self._pose, self._trunk_pose = end, self._trunk_end
+            self._bodies.rub(planes, before, positions, poses)
+        head = poses.head, poses.head_end
+        self._grid.share(positions, self._strands.masses, self._held, *head, self.dt, SHARE, KEEP, velocities)
+        self._pose, self._trunk_pose = poses.head_end, poses.trunk_end
         lost = report["nan"] > 0.0
         if lost.any():
             self._begin_again(lost)
             note = note or f"{lost.sum()} of {lost.size} locks were lost and begin again as groomed"
         return note
 
-    def _touched(self, held: Array) -> TouchedRods:
+    def _touched(self, held: Array, inertia: Array) -> TouchedRods:
         """The rods that a hand may touch in a step after which what is held is there."""
         edges = np.linalg.norm(np.diff(self.groomed_rods, axis=1, prepend=self.groomed_rods[:, :1]), axis=2)
-        inertia = np.where(self._held == 0, self._strands.masses / self.dt**2, 0.0)
         return TouchedRods(
             self._rods.curves.ids,
             self.rods,
@@ -295,57 +290,20 @@ class Live:
             inertia.reshape(-1, VERTICES),
         )
 
-    def _outside(self, touch_at: ArrayLike, radius: float, pose: Array) -> Array:
-        """Where a palm is that is kept outside the bodies that move with the head [m]."""
-        at = np.array(touch_at, np.float64)
-        for grid in (grid for grid, moves in self._grids if moves):
-            distance, away = grid.at(((at - pose[:3, 3]) @ pose[:3, :3])[None])
-            at += max(0.0, radius + self._clearance.max() - distance[0]) * (pose[:3, :3] @ away[0])
-        return at
-
-    def _planes(self, start: Array, end: Array, touch: Touch | None) -> Planes | None:
-        """The planes that keep the rods outside bodies in a step in which the head goes from one pose to another."""
-        if not self._grids and touch is None:
+    def _palm(self, touch: Touch | None, poses: Poses) -> Palm | None:
+        """The palm of a hand that pats, kept outside the head."""
+        if touch is None or touch.does != "pat":
             return None
-        positions, planes = self._strands.positions, _core.BodyPlanes(len(self._held))
-        above, of_trunk = self._above_neck(positions, start), (self._trunk_pose, self._trunk_end)
-        for grid, of_head in self._grids:
-            if of_head:
-                planes.add(grid, start, end, positions, np.where(above, self._clearance, -np.inf))
-            planes.add(grid, *of_trunk, positions, np.where(above & of_head, -np.inf, self._clearance))
-        if touch is not None and touch.does == "pat":
-            begin = self._outside(self._hand.start, touch.radius, start)
-            after = self._outside(touch.at, touch.radius, end)
-            planes.add_ball(begin, after, touch.radius, PRESSED, positions, self._clearance)
-        near = (planes.gaps < NEAR) & (self._held == 0)
-        stiffness = np.where(near, FIRM / self.dt**2 * self._strands.masses, 0.0)
-        return planes.normals, planes.offsets, stiffness
-
-    def _above_neck(self, positions: Array, head: Array) -> NDArray[np.bool_]:
-        """Which places are with what moves with the head, shape (n,)."""
-        return positions @ head[:3, 1] - head[:3, 3] @ head[:3, 1] > self._neck
-
-    def _taken_along(self, positions: Array, start: Array, end: Array) -> Array:
-        """Where places would be at the end of a step, had they gone with the body that is there, shape (n, 3) [m]."""
-        of_head, of_trunk = (
-            _moved(positions, to @ np.linalg.inv(of)) for of, to in ((start, end), (self._trunk_pose, self._trunk_end))
+        start = self._bodies.outside(self._hand.start, touch.radius, poses.head)
+        return Palm(
+            start, self._bodies.outside(np.array(touch.at), touch.radius, poses.head_end), touch.radius, PRESSED
         )
-        return np.where(self._above_neck(positions, start)[:, None], of_head, of_trunk)
-
-    def _rub(self, planes: Planes, taken_along: Array) -> None:
-        """Coulomb friction on bodies in the next step: springs as stiff as it would have been on the slip of this."""
-        normals, offsets, stiffness = planes
-        positions = self._strands.positions
-        pressed = stiffness * np.maximum(offsets - np.einsum("ni,ni->n", normals, positions), 0.0)
-        slip = positions - taken_along
-        slip -= np.einsum("ni,ni->n", normals, slip)[:, None] * normals
-        self._friction = FRICTION * pressed / np.maximum(np.linalg.norm(slip, axis=1), STICK)
 
     def reset(self) -> None:
         """Puts the hair at rest as it is groomed, on the head where that is."""
         self._pose, self._trunk_pose = self._head, self._trunk_end
         self._strands.place(*self._at_rest())
-        self._friction = np.zeros(len(self._held))
+        self._bodies.let_go()
 
     @property
     def _trunk_end(self) -> Array:
@@ -377,27 +335,11 @@ class Live:
         )
         self._grid = _core.VelocityGrid(rods.min(axis=0) - MARGIN, rods.max(axis=0) + MARGIN, CELL)
         self._crowding = self._rods.crowding()
-        self._set_bodies(rods)
+        self._bodies.fit(rods, np.repeat(self._rods.radius, VERTICES), MARGIN, neck(groom)[1])
         wire = self._wire()
         self._hanging = HangingRods(self._rods, wire, self._groomed_gravity)
         self._strands, self._support = self._hanging.strands(wire, self._groomed_gravity)
         self._held = np.ascontiguousarray(self._strands.held, np.uint8)
-        self._neck = neck(groom)[1]
-        self._friction = np.zeros(len(self._held))
-
-    def _set_bodies(self, rods: Array) -> None:
-        """Samples the distances to bodies around the hair; what is groomed closer than its coil is wide stays so."""
-        low, high = rods.min(axis=0) - MARGIN, rods.max(axis=0) + MARGIN
-        self._clearance = np.repeat(self._rods.radius + CLEARANCE, VERTICES)
-        if not self._grids or (low < self._low).any() or (high > self._high).any():
-            self._low, self._high = low - MARGIN, high + MARGIN
-            self._grids = []
-            for meshes, of_head in ((self._bodies, True), (self._clothes, False)):
-                for mesh in meshes:
-                    solid = _core.Solid(np.ascontiguousarray(mesh.points, np.float64), mesh.triangles)
-                    self._grids.append((_core.DistanceGrid(solid, self._low, self._high, DISTANCES, BAND), of_head))
-        for grid, _ in self._grids:
-            self._clearance = np.minimum(self._clearance, grid.at(rods)[0])
 
     def _wire(self) -> Wire:
         """What the locks that are simulated are made of."""
@@ -425,7 +367,7 @@ class Live:
 
     def _at_rest(self) -> tuple[Array, Array]:
         """Positions [m] and directors of rods that are at rest as groomed, where the head is."""
-        return _moved(self._rods.points, self._pose), self._hanging.frames @ self._pose[:3, :3].T
+        return moved(self._rods.points, self._pose), self._hanging.frames @ self._pose[:3, :3].T
 
     def _go_on(self, before: HangingRods, strands: Strands) -> None:
         """Puts the rods of locks that were there before where they were; held vertices are with the new groom.
@@ -446,19 +388,19 @@ class Live:
     def _catch_up(self) -> str:
         """Carries hair rigidly along with a head that is thrown; returns a sentence about that."""
         move = self._head @ np.linalg.inv(self._pose)
-        centre = _moved(self._rods.points.mean(axis=0, keepdims=True), self._pose)
-        distance = float(np.linalg.norm(_moved(centre, move) - centre))
+        centre = moved(self._rods.points.mean(axis=0, keepdims=True), self._pose)
+        distance = float(np.linalg.norm(moved(centre, move) - centre))
         angle = float(np.linalg.norm(rotation_vector(move[:3, :3])))
         if distance <= FARTHEST and angle <= FASTEST:
             return ""
         memory = self._strands.memory
-        memory["positions"] = _moved(memory["positions"], move)
+        memory["positions"] = moved(memory["positions"], move)
         for name in ("velocities", "directors", "normals"):
             memory[name] = memory[name] @ move[:3, :3].T
         memory["velocities"][:] = 0.0
         self._strands.recall({name: np.ascontiguousarray(values) for name, values in memory.items()})
         self._pose, self._trunk_pose = self._head, self._trunk_end
-        self._friction[:] = 0.0
+        self._bodies.let_go()
         return (
             f"the head was thrown {distance:.2g} m and {np.degrees(angle):.0f}° in a step of {self.dt:.3g} s; its hair "
             "was carried along"
@@ -501,11 +443,6 @@ def _edge_frames(points: Array, directors: Array, rods: NDArray[np.integer]) -> 
     across = across - (across * tangents).sum(axis=2, keepdims=True) * tangents
     across /= np.linalg.norm(across, axis=2, keepdims=True)
     return np.stack([tangents, across, np.cross(tangents, across)], axis=-1)
-
-
-def _moved(points: Array, transform: Array) -> Array:
-    """Points (n, 3) after a rigid motion."""
-    return points @ transform[:3, :3].T + transform[:3, 3]
 
 
 def _vector(values: Sequence[float], name: str) -> Vector:
