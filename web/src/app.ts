@@ -178,7 +178,7 @@ export class App {
   /** The picture shows what comes before panels hear of it. */
   private fillPicture(): void {
     const { model, viewer } = this;
-    model.hear("subject", ({ low, high }) => viewer.await(low, high));
+    model.hear("subject", ({ low, high }) => viewer.frameSkin(low, high));
     model.hear("body", (message) => viewer.stage.setBody(message));
     model.hear("hairs", (message) => viewer.stage.setHairs(message));
     model.hear("colors", (message) => viewer.stage.setColors(message));

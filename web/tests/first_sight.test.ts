@@ -24,7 +24,7 @@ test("the skin that hair is to grow on is framed until hair is there", async () 
 test("a graphics card that is lost is one line, with what to do", async () => {
   const page = await open();
   page.app.viewer.canvas.dispatchEvent(new Event("webglcontextlost"));
-  Socket.latest.close(); // is told too
+  Socket.latest.close(); // is reported too
   expect(texts(".problems .problem:not([hidden]) p").filter(Boolean)).toEqual([
     "The picture stands still: the browser has lost the graphics card. Load the page again; the groom and all edits stay.",
     "The server does not answer. Your edits are kept here until it is back.",

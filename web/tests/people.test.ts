@@ -72,7 +72,7 @@ test("who asks to edit is named, and gets an answer", async () => {
   expect(page.last("hand")).toEqual({ kind: "hand", over: true });
 });
 
-test("who leaves while they edit leaves the edit lock to the others, who are told", async () => {
+test("pages that follow are notified when the leading page disconnects, and one takes the edit lock", async () => {
   const page = await open();
   two(page, false, "Bo");
   page.role({ leads: false, people: [person("Guest 2", { you: true })] }); // loads the page again
@@ -82,7 +82,7 @@ test("who leaves while they edit leaves the edit lock to the others, who are tol
   expect(texts(".notice")).toEqual([]);
   page.role({ leads: false, people: [person("Guest 2", { you: true })] });
   vi.advanceTimersByTime(3000);
-  expect(texts(".notice")).toEqual(["Bo has left; whoever presses ‘Edit’ first goes on"]);
+  expect(texts(".notice")).toEqual(["Bo has disconnected; the first to press ‘Edit’ takes the edit lock"]);
   control("Edit").click();
   expect(page.last("lead")).toEqual({ kind: "lead" });
 });

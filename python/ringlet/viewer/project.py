@@ -26,7 +26,7 @@ class Project:
             )
         return resolved
 
-    def beside(self, name: str, suffix: str) -> Path:
+    def new_file(self, name: str, suffix: str) -> Path:
         """Path of a new file in the folder; appends ``suffix`` to a name without ``.toml``.
 
         Raises UserError for a name with a folder.

@@ -18,7 +18,7 @@ interface Aspect {
 }
 
 /** A setting of a stage; `inner` is one in its table. */
-export interface Found {
+interface Found {
   file: File;
   stage: Place;
   setting: Setting;
@@ -26,7 +26,7 @@ export interface Found {
 }
 
 /** A setting that was meant, and what is to be done with it. */
-export interface Meant extends Found {
+interface Meant extends Found {
   aspect: Aspect;
   advice: string;
 }
@@ -166,8 +166,8 @@ const ASPECTS: Aspect[] = [
     label: "settling",
     file: "shot",
     settings: ["motion.settle", "strands.damping", "strands.drag"],
-    less: ["shorter"],
-    more: ["calmer", "dampened"],
+    less: ["calmer", "dampened"],
+    more: [],
     named: ["settle", "damping", "swinging", "wobble", "jiggle"],
   },
 ];
@@ -176,7 +176,7 @@ const FILLERS = new Set("a an the and or with of on in at to it its more less mu
 const SHORTEST = 3; // letters of a word that is begun
 
 /** Settings of a table, or of operators of a name, in the open files. */
-export function findSettings(model: Model, file: File, name: string): Found[] {
+function findSettings(model: Model, file: File, name: string): Found[] {
   const document = model.documents[file];
   if (!document || !model.welcome) return [];
   const [table, wanted, part] = name.split(".") as [string, string, string?];

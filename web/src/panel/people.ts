@@ -136,7 +136,7 @@ export class People {
     if (leader) this.led = leader.name;
     clearTimeout(this.gone);
     const left = () => {
-      this.notices.show(`${this.led} has left; whoever presses ‘Edit’ first goes on`);
+      this.notices.show(`${this.led} has disconnected; the first to press ‘Edit’ takes the edit lock`);
       this.led = "";
     };
     if (this.led && !leader) this.gone = window.setTimeout(left, RETURN);

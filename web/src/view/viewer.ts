@@ -183,7 +183,7 @@ export class Viewer {
   }
 
   /** Looks at the skin that hair is to grow on, by its bounds, and at the face below it; until hair is there. */
-  await(low: number[], high: number[]): void {
+  frameSkin(low: number[], high: number[]): void {
     if (this.placed) return;
     const down = FACE * (high[1]! - low[1]!);
     const ends = [[low[0], low[1]! - down, low[2]], high] as number[][];

@@ -140,7 +140,7 @@ class Presets:
         """Writes tables of the recipe to a preset of the project; raises UserError where one of the name exists."""
         self._files.refuse_several()
         document = self._files.recipe
-        path = self._files.project.beside(message.name, SUFFIX)
+        path = self._files.project.new_file(message.name, SUFFIX)
         if not path.name.endswith(SUFFIX):
             path = path.with_name(path.name.removesuffix(".toml") + SUFFIX)
         if path.exists():

@@ -32,7 +32,7 @@ def write_copy(files: Files, file: File, name: str, *, as_variant: bool) -> Path
     as_variant: whether the copy extends the file
     """
     document = files.document(file)
-    path = files.project.beside(name, f".{file}.toml")
+    path = files.project.new_file(name, f".{file}.toml")
     if path.exists():
         raise UserError(f"save: {path.name} is there already; give another name")
     text = document.text

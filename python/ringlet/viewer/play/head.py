@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ringlet.data.rigid import rotation_matrix, rotation_vector
 
@@ -88,7 +88,7 @@ def clip_motion(transforms: Array, pivot: Array, fps: float) -> Motion:
             first = min(int(frame), max(count - 2, 0))
             share, ends = frame - first, (first, min(first + 1, count - 1))
         else:
-            share, ends = _smooth((frame - count + 1) / back), (count - 1, 0)
+            share, ends = smooth_step((frame - count + 1) / back), (count - 1, 0)
         turn, shift = ((1.0 - share) * of[ends[0]] + share * of[ends[1]] for of in (turns, shifts))
         return turn, shift
 
@@ -109,7 +109,7 @@ class _Playing:
         turn, shift = self.motion.at(self.time)
         if self.motion.seconds < math.inf:
             return turn, shift
-        share = _smooth(self.time / FADE) * (1.0 - _smooth((self.time - self.ends) / FADE))
+        share = smooth_step(self.time / FADE) * (1.0 - smooth_step((self.time - self.ends) / FADE))
         return share * turn, share * shift
 
 
@@ -185,7 +185,7 @@ class Head:
         return [one for playing in self._playing.values() for one in playing]
 
 
-def _smooth(x: float) -> float:
+def smooth_step(x: ArrayLike) -> Array:
     """From 0 to 1, with no slope at the ends."""
-    x = min(max(x, 0.0), 1.0)
+    x = np.clip(x, 0.0, 1.0)
     return x * x * (3.0 - 2.0 * x)

@@ -20,6 +20,7 @@ from ringlet.data.toml import toml_key
 from ringlet.picture import material_of
 from ringlet.viewer.files.document import set_value
 from ringlet.viewer.files.open_files import Files
+from ringlet.viewer.play.head import smooth_step
 from ringlet.viewer.show.live_take import LEAD, LiveTake
 
 Array = NDArray[np.float64]
@@ -67,7 +68,7 @@ class HeadClip:
         if len(resting):
             before = before[resting[-1] :]
         else:
-            before = before * _smooth(np.arange(len(before)) / max(len(before), 1))[:, None]
+            before = before * smooth_step(np.arange(len(before)) / max(len(before), 1))[:, None]
         if (np.abs(taken[0]) < AT_REST).all():
             before = before[:0]
         all_poses = np.concatenate([before, taken])
@@ -112,7 +113,7 @@ def write_take_shot(files: Files, take: LiveTake, shot: str, name: str) -> TakeS
         stem = f"{files.recipe.path.name.removesuffix('.toml').removesuffix('.recipe')}_take"
         names = [stem, *(f"{stem}_{k}" for k in range(2, 1000))]
         name = next(one for one in names if not any(path.exists() for path in _paths(folder, one)))
-    files.project.beside(name, ".shot.toml")
+    files.project.new_file(name, ".shot.toml")
     head, recipe, path_of_shot = _paths(folder, name)[:3]
     for path in _paths(folder, name):
         if path.exists():
@@ -183,8 +184,4 @@ def _share_of_head(places: Array) -> Array:
     """How far skin goes with the head, from its place about the joint of the neck [m], shape (n, 1)."""
     beyond = np.maximum(0.0, np.hypot(places[:, 0], places[:, 2]) / RADIUS - 1.0)
     t = np.clip(1.0 + places[:, 1] / NECK * (1.0 + SHOULDER * beyond), 0.0, 1.0)
-    return _smooth(np.where(places[:, 1] >= 0.0, 1.0, t))[:, None]
-
-
-def _smooth(t: Array) -> Array:
-    return t * t * (3.0 - 2.0 * t)
+    return smooth_step(np.where(places[:, 1] >= 0.0, 1.0, t))[:, None]
