@@ -158,7 +158,7 @@ def shot(browser: Browser) -> Image.Image:
         page.until("ringlet.timeline.count >= 8")
         page.press("Pause")
         page.get("ringlet.timeline.show(6)")
-        page.press("Swing and earlier runs")
+        page.press("Chart of the swing, and earlier runs")
         page.until("ringlet.timeline.settled")
         return page.taken()
 
@@ -231,6 +231,7 @@ def people(browser: Browser) -> Movie:
         movie.still(2000)
         one.page.keyboard.press("s")
         one.until("ringlet.model.snapshots.length == 1 && ringlet.model.pictures.size == 1")
+        one.page.get_by_role("tab", name="Snapshots").click()
         movie.still(1500)
         shorter = "{ kind: 'set', file: 'recipe', changes: [[['guides', 'length', 'value'], 6]], gesture: 1 }"
         one.get(f"ringlet.model.say({shorter})")
@@ -282,7 +283,7 @@ PICTURES: dict[str, Callable[[Browser], Image.Image | Movie]] = {
 }
 
 SIZES = (DESKTOP, WIDE, TABLET, LYING, PHONE)
-STATES = ("start", "curl", "brush", "presets", "tray", "note", "keys")
+STATES = ("start", "curl", "brush", "presets", "snapshots", "note", "keys")
 SHOT_STATES = ("shot", "swing", "wipe")
 
 
@@ -300,7 +301,7 @@ def reach(page: Page, state: str) -> None:
             if page.page.locator(".sheets").is_visible():
                 page.press("Stages")
             page.press("Looks and presets…")
-        case "tray":
+        case "snapshots":
             keyboard.press("t")
         case "note":
             keyboard.press("t")
@@ -308,7 +309,7 @@ def reach(page: Page, state: str) -> None:
         case "keys":
             keyboard.press("?")
         case "swing":
-            page.press("Swing and earlier runs")
+            page.press("Chart of the swing, and earlier runs")
             page.get("ringlet.timeline.goTo(ringlet.model.timeline.frames[1])")
             page.until("ringlet.timeline.settled")
         case "wipe":

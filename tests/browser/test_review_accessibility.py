@@ -92,7 +92,7 @@ def test_every_tool_of_a_recipe_is_accessible(opened: Any):
     page.keyboard.press("Escape")
     page.get_by_role("tab", name="References").click()
     checked.check("references")
-    page.get_by_role("button", name="Close the tray").click()
+    page.get_by_role("tab", name="Settings").click()
     assert checked.found == {}
 
 

@@ -36,7 +36,7 @@ def test_the_page_says_when_it_has_settled(opened: Any):
     assert review.get("ringlet.model.said('recipe', ['curl', 'width'])") == 2
     assert not review.get("(ringlet.viewer.move(), ringlet.settled)")
     review.settled()
-    assert not review.get("(document.querySelector('.settings').style.width = '200px', ringlet.laidOut)")
+    assert not review.get("(document.querySelector('.dock').style.width = '200px', ringlet.laidOut)")
     review.laid_out()
     assert not review.errors
 

@@ -131,9 +131,9 @@ def test_a_shot_is_compared_with_a_cache_and_overlays(opened: Any, folder: Path)
     review.page.get_by_label("Overlay").select_option("")
     review.get("ringlet.timeline.show(4)")
     review.until("ringlet.timeline.settled")
-    review.page.get_by_role("button", name="Swing and earlier runs").click()
+    review.page.get_by_role("button", name="Chart of the swing, and earlier runs").click()
     assert "cache.usda has no speeds" in review.page.locator(".swing-legend").inner_text()
-    review.page.get_by_role("button", name="Swing and earlier runs").click()
+    review.page.get_by_role("button", name="Chart of the swing, and earlier runs").click()
     left, right = np.split(review.clear_picture(), 2, axis=1)
     assert different(left, right) > 0.002
     assert not review.errors
@@ -156,7 +156,7 @@ def test_an_earlier_run_is_compared_by_wipe_and_the_chart_shows_its_swing(opened
     assert page.locator(".runs .stale").count() == 1
     run()
     assert page.locator(".runs span").count() == 1 and page.locator(".runs .stale").count() == 0
-    page.get_by_role("button", name="Swing and earlier runs").click()
+    page.get_by_role("button", name="Chart of the swing, and earlier runs").click()
     review.get("ringlet.timeline.goTo(4)")
     review.until("ringlet.timeline.settled")
     now = review.clear_picture()

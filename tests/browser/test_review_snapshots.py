@@ -14,7 +14,13 @@ from review import Review
 AXES = (("x", "width"), ("y", "height"))
 
 
+def show(review: Review, tab: str) -> None:
+    """Shows a tab of the dock."""
+    review.page.get_by_role("tab", name=tab).click()
+
+
 def set_curl(review: Review, **values: Any) -> None:
+    show(review, "Settings")
     for name, value in values.items():
         field = review.page.locator(f'[data-setting="curl.{name}"] > .field-head input.number')
         field.fill(str(value))
@@ -41,20 +47,20 @@ def test_a_snapshot_is_taken_compared_loaded_noted_and_deleted(opened: Any, fold
     review: Review = opened(viewport={"width": 1280, "height": 800})
     page = review.page
     first = review.locks()
-    page.keyboard.press("t")
+    show(review, "Snapshots")
     page.locator(".author").fill("Ann")
     page.locator(".author").press("Enter")
     take(review)
     review.until("document.querySelector('.card img')?.naturalWidth == 400")
     set_curl(review, width=2.5)
     take(review)
+    show(review, "Snapshots")
     cards = page.get_by_role("list", name="Snapshots").locator(".card")
     assert cards.count() == 2 and "Ann" in cards.first.inner_text()
     cards.nth(1).get_by_role("textbox").fill("as agreed")
     cards.nth(1).get_by_role("textbox").blur()
     review.until("ringlet.model.snapshots[0].note == 'as agreed'")
     page.get_by_role("button", name="Compare with ‘as agreed’").click()
-    page.get_by_role("button", name="Close the tray").click()
     review.until("ringlet.viewer.compared && ringlet.viewer.hair.b.table")
     assert page.locator(".look-label b").all_inner_texts() == ["now", "as agreed"]
     assert "Ann" in page.locator('.look-label[data-side="b"] span').inner_text()
@@ -62,16 +68,12 @@ def test_a_snapshot_is_taken_compared_loaded_noted_and_deleted(opened: Any, fold
     assert page.locator(".compare-changes tbody tr").all_inner_texts() == ["curl.width\t2.5\t1.0"]
     page.get_by_role("button", name="End", exact=True).click()
     review.until("!ringlet.viewer.compared")
-    page.locator("body").click(position={"x": 640, "y": 300})
-    page.keyboard.press("t")
     cards.nth(1).get_by_role("button", name="Load").click()
     review.until("ringlet.model.said('recipe', ['curl', 'width']) == 1 && ringlet.model.settled")
-    page.get_by_role("button", name="Close the tray").click()
     review.settled()
     assert np.array_equal(review.locks(), first)
     page.keyboard.press("Control+z")
     review.until("ringlet.model.said('recipe', ['curl', 'width']) == 2.5")
-    page.keyboard.press("t")
     cards.first.get_by_role("button", name="Delete").click()
     page.get_by_role("dialog").get_by_role("button", name="Delete", exact=True).click()
     review.until("ringlet.model.snapshots.length == 1")
@@ -85,12 +87,10 @@ def test_a_snapshot_is_taken_compared_loaded_noted_and_deleted(opened: Any, fold
 def test_four_looks_have_one_camera_and_their_labels(opened: Any):
     review: Review = opened(viewport={"width": 1280, "height": 800}, pixels=0.1)
     page = review.page
-    page.keyboard.press("t")
     take(review)
     for width in (1.8, 2.6):
         set_curl(review, width=width)
         take(review)
-    page.get_by_role("button", name="Close the tray").click()
     set_curl(review, width=3.2)
     for card in (0, 1, 2):
         review.get(f"document.querySelectorAll('.thumbnail')[{card}].click()")
@@ -129,12 +129,13 @@ def test_the_difference_of_two_looks_is_where_they_differ(opened: Any):
 
 
 @pytest.mark.parametrize("width, height", [(390, 844), (1280, 800)])
-def test_the_tray_covers_no_control(opened: Any, width: int, height: int):
+def test_the_dock_covers_no_control(opened: Any, width: int, height: int):
     review: Review = opened(viewport={"width": width, "height": height}, has_touch=True, is_mobile=width != 1280)
     if width == 390:
         review.page.get_by_role("navigation", name="Panels").get_by_role("button", name="View").click()
     review.page.get_by_role("button", name="Take a snapshot (S)").click()
     review.until("ringlet.model.pictures.size == 1")
-    box = review.page.locator(".tray").bounding_box()
+    review.page.keyboard.press("t")
+    box = review.page.locator(".dock").bounding_box()
     assert box["x"] >= 0 and box["x"] + box["width"] <= width
     assert review.get("document.documentElement.scrollWidth") <= width

@@ -36,7 +36,7 @@ def test_a_groom_that_cannot_be_made_stays_in_sight_with_its_remedies(opened: An
 
 
 OVERLAPS = """() => {
-    const panels = '.bar, .left > *, .settings, .tray, .viewbar, .status, .sheets, .problems';
+    const panels = '.bar, .left > *, .dock, .viewbar, .timeline, .sheets, .problems';
     const parts = [...document.querySelectorAll(panels)]
         .filter((e) => e.checkVisibility() && e.getBoundingClientRect().height > 0)
         .map((e) => {
@@ -86,9 +86,9 @@ def test_one_thing_at_a_time_is_open_on_a_small_screen(opened: Any):
     panels = page.get_by_role("navigation", name="Panels")
     panels.get_by_role("button", name="View").click()
     page.get_by_role("button", name="Snapshots, notes and references (T)").click()
-    assert page.locator(".tray").is_visible() and not page.locator(".viewbar").is_visible()
+    assert page.locator(".dock").is_visible() and not page.locator(".viewbar").is_visible()
     panels.get_by_role("button", name="Stages").click()
-    assert page.locator(".stack").is_visible() and not page.locator(".tray").is_visible()
+    assert page.locator(".stack").is_visible() and not page.locator(".dock").is_visible()
     page.get_by_role("button", name="Looks and presets…").click()
     page.keyboard.press("b")
     assert page.locator(".brush.sculpt").is_visible() and not page.locator(".presets, .stack").first.is_visible()
@@ -97,21 +97,57 @@ def test_one_thing_at_a_time_is_open_on_a_small_screen(opened: Any):
     assert not review.errors
 
 
+SHARE = """() => {
+    const at = (size) => Array.from({ length: size / 8 }, (_, k) => 8 * k + 4);
+    const places = at(innerHeight).flatMap((y) => at(innerWidth).map((x) => document.elementFromPoint(x, y)));
+    return places.filter((element) => element?.closest('.picture')).length / places.length;
+}"""
+
+
+def test_chart_and_notes_leave_most_of_the_window_to_the_picture(opened: Any):
+    review: Review = opened("small.shot.toml", viewport={"width": 1280, "height": 800})
+    page = review.page
+    for tab in ("Chart", "Snapshots", "Notes", "References"):
+        page.get_by_role("tab", name=tab).click()
+        review.laid_out()
+        clear = review.get("ringlet.viewer.clear")
+        assert page.evaluate(SHARE) > 0.6 and clear["width"] * clear["height"] > 0.6 * 1280 * 800
+        assert page.evaluate(OVERLAPS) == []
+    assert not review.errors
+
+
+def test_a_phone_that_follows_reads_settings_and_sees_the_picture(opened: Any, serve: Any):
+    server = serve("small.shot.toml")
+    opened(server)
+    review: Review = opened(server, viewport={"width": 390, "height": 844}, has_touch=True, is_mobile=True)
+    page = review.page
+    page.get_by_role("button", name="Stay a guest").click()
+    review.laid_out()
+    assert page.evaluate(SHARE) > 0.5
+    panels = page.get_by_role("navigation", name="Panels")
+    panels.get_by_role("button", name="Stages", exact=True).click()
+    review.laid_out()
+    assert page.evaluate(SHARE) > 0.3 and review.get("ringlet.viewer.clear.height") > 0.25 * 844
+    panels.get_by_role("button", name="Settings", exact=True).click()
+    page.locator(".search").first.fill("curlier")
+    page.locator("#found-0").click()
+    setting = page.locator('[data-setting="curl.pitch"]')
+    assert setting.is_visible() and setting.locator("input").first.is_disabled()
+    assert not review.errors
+
+
 @pytest.mark.parametrize(("width", "height"), [(390, 844), (820, 1180), (1280, 800)])
-def test_the_tray_leaves_the_picture_clear_and_its_targets_are_large_enough(opened: Any, width: int, height: int):
+def test_the_dock_leaves_the_picture_clear_and_its_targets_are_large_enough(opened: Any, width: int, height: int):
     review: Review = opened(viewport={"width": width, "height": height}, has_touch=True, is_mobile=True)
     page = review.page
     before = review.get("ringlet.viewer.clear")
-    page.keyboard.press("a")  # writes a note in the tray
+    page.keyboard.press("a")  # writes a note
     review.laid_out()
-    tray, clear = page.locator(".tray").bounding_box(), review.get("ringlet.viewer.clear")
-    assert clear["y"] + clear["height"] <= tray["y"]
     assert page.evaluate(OVERLAPS) == [] and page.evaluate(SMALL) == [] and page.evaluate(SPILLED) == []
-    tabs = page.get_by_role("tablist", name="Tray").bounding_box()
-    closing = page.get_by_role("button", name="Close the tray").bounding_box()
-    assert closing["y"] == pytest.approx(tabs["y"], abs=4)  # in the line of the tabs
     page.keyboard.press("Escape")
-    page.get_by_role("button", name="Close the tray").click()
+    page.keyboard.press("t")
+    if width == 390:
+        page.get_by_role("navigation", name="Panels").get_by_role("button", name="Picture").click()
     review.laid_out()
     assert review.get("ringlet.viewer.clear") == before and not review.errors
 
@@ -155,6 +191,6 @@ def test_the_focus_of_the_picture_is_seen_between_the_panels(opened: Any):
     style = "getComputedStyle(document.querySelector('.picture'), '::before')"
     left, right = (float(review.get(f"{style}.{side}").removesuffix("px")) for side in ("left", "right"))
     panel = review.get("document.querySelector('.left').getBoundingClientRect().right")
-    settings = review.get("innerWidth - document.querySelector('.settings').getBoundingClientRect().left")
+    settings = review.get("innerWidth - document.querySelector('.dock').getBoundingClientRect().left")
     assert left >= panel and right >= settings
     assert review.get("getComputedStyle(document.querySelector('canvas')).outlineStyle") == "none"

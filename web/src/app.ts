@@ -9,6 +9,7 @@ import { HandTools } from "./panel/hand_tools";
 import { ClearArea } from "./panel/clear_area";
 import { CompareBar } from "./panel/compare";
 import { bindKey, plainKey } from "./panel/keys";
+import { Dock } from "./panel/dock";
 import { HeadHandle } from "./panel/head_handle";
 import { Lens } from "./panel/lens";
 import { LiveHair } from "./panel/live";
@@ -29,7 +30,6 @@ import { ProblemBar } from "./panel/problems";
 import { Notices, Status } from "./panel/status";
 import { TakePlayer } from "./panel/takes";
 import { TimelineBar } from "./panel/timeline";
-import { Tray } from "./panel/tray";
 import { Viewbar } from "./panel/viewbar";
 import { Sheets } from "./panel/sheets"; // the last of the panels, since its style places the others on a phone
 import type { SharePage, Welcome } from "./protocol";
@@ -48,7 +48,7 @@ export class App {
   readonly tools: HandTools;
   readonly look: Look;
   readonly render: RenderPanel;
-  readonly tray: Tray;
+  readonly dock: Dock;
   private readonly notices = new Notices(this.model);
   private readonly problems: ProblemBar;
   private readonly status = new Status(this.model);
@@ -88,16 +88,23 @@ export class App {
     this.look = new Look(model, viewer, viewbar, this.lock, this.timeline, this.notices);
 
     // What is kept next to the recipe
-    this.tray = new Tray(() => this.look.introduce());
-    const snapshots = new Snapshots(model, viewer, this.look, this.tray);
+    const dock = (this.dock = new Dock(() => this.look.introduce()));
+    const settings = new Settings(model);
+    dock.add(settings.tab);
+    dock.add(this.timeline.tab);
+    for (const topic of ["document", "timeline"] as const) model.on(topic, () => dock.update());
+    this.timeline.openChart = (shown) => (dock.isShown(this.timeline.tab) && !shown ? dock.goBack() : dock.open(this.timeline.tab));
+    const snapshots = new Snapshots(model, viewer, this.look, dock, this.notices);
     const takes = new TakePlayer(model, viewer, this.timeline, () => snapshots.take("keep_take"));
     snapshots.play = (id) => takes.play(id);
     snapshots.makeShot = (id) => takes.makeShot(id);
     live.buttons.append(takes.keep);
-    const notes = new Notes(model, viewer, this.look, this.tray);
-    const references = new References(model, viewer, this.tray, this.notices);
-    this.tray.opened = () => sheets.open("");
-    sheets.chosen = () => this.tray.show(false);
+    const notes = new Notes(model, viewer, this.look, dock);
+    const references = new References(model, viewer, dock, this.notices);
+    dock.element.append(this.status.element);
+    dock.opened = () => sheets.open("settings");
+    dock.uncover = () => sheets.open("");
+    sheets.settings = settings.search.wanted = () => dock.open(settings.tab);
 
     // What is over the picture goes with it
     const pointer = new PresenterPointer(model, viewer);
@@ -108,20 +115,19 @@ export class App {
 
     // The panels around it
     const lens = new Lens(model, viewer, this.look, () => this.name);
-    viewbar.element.append(live.button, live.line, lens.button, snapshots.button, this.tray.button);
+    viewbar.element.append(live.button, live.line, lens.button, snapshots.button, dock.button);
     const bar = new Bar(model, () => this.setTheme(), people.element, () => this.endComparison()).element;
     const compare = new CompareBar(model, viewer, () => this.endComparison());
     compare.bar.append(takes.element);
     const stack = new Stack(model, () => presets.show(true));
     const left = h("div", { class: "left" }, stack.element, presets.element, this.lock.element, ...this.tools.elements);
-    const settings = new Settings(model).element;
-    root.prepend(skips([["stages", left], ["settings", settings], ["view", viewbar.element]]));
-    root.append(bar, left, settings);
-    root.append(h("nav", { "aria-label": "View" }, viewbar.element), compare.element, this.tray.element, lens.element);
-    root.append(this.timeline.element, this.status.element, this.notices.element, this.problems.element, sheets.element);
-    const below = [viewbar.element, this.timeline.element, this.status.element, sheets.element];
-    const panels = [...left.children, settings] as HTMLElement[];
-    this.clearArea = new ClearArea([bar, this.problems.element], [compare.bar], panels, below, this.tray.element, (clear) => {
+    const lower = h("div", { class: "lower" }, h("nav", { "aria-label": "View" }, viewbar.element), this.timeline.element);
+    const back = () => dock.open(settings.tab);
+    root.prepend(skips([["stages", left, back], ["settings", settings.element, back], ["view", viewbar.element]]));
+    root.append(bar, left, dock.element, lower, compare.element, lens.element, this.notices.element, this.problems.element, sheets.element);
+    const below = [viewbar.element, this.timeline.element, sheets.element];
+    const panels = [...left.children, dock.element] as HTMLElement[];
+    this.clearArea = new ClearArea([bar, this.problems.element], [compare.bar], panels, below, (clear) => {
       viewer.setClear(clear);
       model.tell("clear");
     });

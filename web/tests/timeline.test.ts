@@ -78,7 +78,7 @@ test("the page keeps only frames near the current one", async () => {
 test("a cache says that it has no chart of its swing", async () => {
   const page = await open("small.shot");
   simulated(page, 1, { state: "none" });
-  control("Swing and earlier runs").click();
+  control("Chart of the swing, and earlier runs").click();
   expect(find(".swing").textContent).toContain("A cache holds positions, not speeds");
   expect(find(".swing-plot svg").hasAttribute("hidden")).toBe(true);
   simulated(page, 1);

@@ -75,6 +75,7 @@ export class Bar {
     this.save.title = dirty ? `Save ${changed.join(" and ")} (Ctrl+S)` : "Save (Ctrl+S)";
     this.name.classList.toggle("dirty", dirty);
     document.title = `${dirty ? "• " : ""}${documents.recipe?.name ?? welcome?.name ?? "Ringlet"}`;
+    this.element.classList.toggle("follows", !role.leads);
     this.undo.toggleAttribute("disabled", !role.leads || !open.some((document) => document.undo));
     this.redo.toggleAttribute("disabled", !role.leads || !open.some((document) => document.redo));
     this.save.toggleAttribute("disabled", !role.leads || !dirty);

@@ -11,19 +11,17 @@ export class ClearArea {
   private box = "";
 
   /**
-   * above, below: bars at the edges; over: bars at the top of the picture; sides: panels in columns on both sides;
-   * tray: what is laid over the lower part of what they leave clear
+   * above, below: bars at the edges; over: bars at the top of the picture; sides: panels in columns on both sides
    */
   constructor(
     private readonly above: HTMLElement[],
     private readonly over: HTMLElement[],
     private readonly sides: HTMLElement[],
     private readonly below: HTMLElement[],
-    private readonly tray: HTMLElement,
     private readonly changed: (clear: Box) => void,
   ) {
     const observer = new ResizeObserver(() => this.measure());
-    for (const element of [document.documentElement, ...above, ...over, ...sides, ...below, tray]) observer.observe(element);
+    for (const element of [document.documentElement, ...above, ...over, ...sides, ...below]) observer.observe(element);
   }
 
   /** Whether panels are where they were measured last. */
@@ -34,16 +32,11 @@ export class ClearArea {
   private measure(): void {
     const { innerWidth, innerHeight } = window;
     const { style } = document.documentElement;
-    const { bottom } = this;
-    const under = this.largest(bottom);
-    style.setProperty("--below", `${innerHeight - bottom + GAP / 2}px`);
-    style.setProperty("--tray-left", `${under.x}px`);
-    style.setProperty("--tray-right", `${innerWidth - under.x - under.width}px`);
-    style.setProperty("--tray-bottom", `${innerHeight - under.y - under.height}px`);
+    style.setProperty("--below", `${innerHeight - this.bottom + GAP / 2}px`);
     const clear = this.clear();
     style.setProperty("--left", `${clear.x}px`);
     style.setProperty("--right", `${innerWidth - clear.x - clear.width}px`);
-    style.setProperty("--over", `${this.aboveTray().y}px`);
+    style.setProperty("--over", `${this.largest(this.bottom).y}px`);
     style.setProperty("--top", `${clear.y}px`);
     style.setProperty("--bottom", `${innerHeight - clear.y - clear.height}px`);
     const now = JSON.stringify(clear);
@@ -57,13 +50,8 @@ export class ClearArea {
     return Math.min(window.innerHeight, ...this.below.flatMap(seen).map(({ top }) => top - GAP / 2));
   }
 
-  private aboveTray(): Box {
-    const [tray] = seen(this.tray);
-    return this.largest(tray ? Math.min(this.bottom, tray.top - GAP / 2) : this.bottom);
-  }
-
   private clear(): Box {
-    const clear = this.aboveTray();
+    const clear = this.largest(this.bottom);
     if (window.innerWidth <= SMALL)
       for (const { height } of this.over.flatMap(seen)) {
         clear.y += Math.round(height + GAP);
@@ -104,8 +92,13 @@ export class ClearArea {
   }
 }
 
-/** The box of an element, if it is seen. */
+/** The box of an element, if it is seen; of what is scrolled within its parent, the part that is in sight. */
 function seen(element: HTMLElement): DOMRect[] {
   const box = element.getBoundingClientRect();
-  return box.width && box.height ? [box] : [];
+  if (!box.width || !box.height) return [];
+  const parent = element.parentElement;
+  if (!parent || parent.scrollHeight <= parent.clientHeight) return [box];
+  const { top, bottom } = parent.getBoundingClientRect();
+  const [from, to] = [Math.max(box.top, top), Math.min(box.bottom, bottom)];
+  return to > from ? [new DOMRect(box.left, from, box.width, to - from)] : [];
 }

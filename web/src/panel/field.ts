@@ -81,6 +81,7 @@ export abstract class Field {
 
   /** Tells the server several values as one step of undo. */
   protected put(changes: [Place, Json][], resting = true): void {
+    if (!this.model.role.leads) return this.update(); // shows again what holds
     if (!this.gesture) this.gesture = this.model.newGesture();
     this.waiting = changes;
     const message = () => {

@@ -12,7 +12,7 @@ import { openDialog } from "./dialog";
 import { bindKey, plainKey } from "./keys";
 import type { Look } from "./look";
 import "./notes.css";
-import type { Tray, TrayTab } from "./tray";
+import type { Dock, DockTab } from "./dock";
 
 type Tool = "pin" | "arrow" | "pen";
 const TOOLS: Record<Tool, string> = { pin: "Pin to the hair", arrow: "Arrow", pen: "Draw" };
@@ -37,7 +37,7 @@ export class Notes {
   /** Over the picture: pins, and the lines of the note that is open. */
   readonly marks = document.createElementNS(SVG, "svg");
   private readonly list = h("ul", { class: "strip", "aria-label": "Notes" });
-  private readonly tab: TrayTab;
+  private readonly tab: DockTab;
   private draft: Draft | null = null;
   private line: Stroke | null = null;
   /** The note whose view is seen. */
@@ -47,12 +47,12 @@ export class Notes {
     private readonly model: Model,
     private readonly viewer: Viewer,
     private readonly look: Look,
-    private readonly tray: Tray,
+    private readonly dock: Dock,
   ) {
     this.marks.classList.add("marks");
     const add = h("button", { type: "button", class: "primary", onclick: () => this.begin() }, "Write a note");
-    this.tab = { title: "Notes", element: this.list, actions: [add], count: () => model.notes.filter((one) => !one.resolved).length };
-    tray.add(this.tab);
+    this.tab = { title: "Notes", element: this.list, signed: true, actions: [add], count: () => model.notes.filter((one) => !one.resolved).length };
+    dock.add(this.tab);
     for (const topic of ["notes", "role"] as const) model.on(topic, () => this.update());
     bindKey({ section: "Review", keys: "A", does: "write a note, with arrows and lines over the picture", on: plainKey("a"), run: () => this.begin() });
     bindKey({ section: "Review", keys: "Escape", does: "discard the note that is being written", on: (event) => this.draft !== null && event.key === "Escape", run: () => this.end() });
@@ -67,7 +67,7 @@ export class Notes {
     const { viewer, model } = this;
     const parts: Element[] = [];
     const split = viewer.looks.split;
-    if (!split && !this.tray.element.hidden) {
+    if (!split && this.dock.isShown(this.tab)) {
       model.notes.forEach((note, k) => {
         const pin = !note.resolved && note.at && this.whereIs(note as Pin);
         if (pin) parts.push(this.dot(pin, String(k + 1), note));
@@ -126,7 +126,7 @@ export class Notes {
   private show(note: Note): void {
     this.opened = note.id;
     this.look.apply(note.look, true);
-    this.tray.open(this.tab);
+    this.dock.open(this.tab);
     this.update();
     this.list.querySelector(`[data-id="${note.id}"]`)?.scrollIntoView({ block: "nearest", inline: "nearest" });
   }
@@ -135,7 +135,7 @@ export class Notes {
     if (this.draft) return;
     this.draft = { text: "", strokes: [], pin: null, tool: "pin" };
     this.opened = "";
-    this.tray.open(this.tab);
+    this.dock.open(this.tab);
     this.update();
     this.list.querySelector("textarea")?.focus();
   }
@@ -185,7 +185,7 @@ export class Notes {
   }
 
   private update(): void {
-    this.tray.update();
+    this.dock.update();
     this.marks.classList.toggle("draws", this.draft !== null);
     if (!this.typing) {
       const notes = this.model.notes.map((note, k) => this.card(note, k + 1));

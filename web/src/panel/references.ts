@@ -8,7 +8,7 @@ import type { Viewer } from "../view/viewer";
 import { bindKey, typing } from "./keys";
 import "./references.css";
 import type { Notices } from "./status";
-import type { Tray, TrayTab } from "./tray";
+import type { Dock, DockTab } from "./dock";
 
 const MODES = { off: "hidden", next: "next to it", over: "over" };
 const LARGEST = 2048; // pixels on the long side of a picture that is kept
@@ -20,22 +20,22 @@ export class References {
   /** Over the picture. */
   readonly element = h("div", { class: "references" });
   private readonly list = h("ul", { class: "strip", "aria-label": "Reference pictures" });
-  private readonly tab: TrayTab;
+  private readonly tab: DockTab;
   private readonly images = new Map<string, HTMLImageElement>();
   private picking = false;
 
   constructor(
     private readonly model: Model,
     private readonly viewer: Viewer,
-    private readonly tray: Tray,
+    private readonly dock: Dock,
     private readonly notices: Notices,
   ) {
     const file = h("input", { type: "file", accept: "image/*", multiple: true, hidden: true });
     file.addEventListener("change", () => void this.addAll([...(file.files ?? [])]));
     const add = h("button", { type: "button", class: "primary", onclick: () => file.click() }, "Add pictures");
     const pick = iconButton("pipette", "Pick the hair's color from a reference picture", () => this.pick(!this.picking), { "aria-pressed": "false" });
-    this.tab = { title: "References", element: this.list, actions: [pick, file, add], count: () => model.references.length };
-    tray.add(this.tab);
+    this.tab = { title: "References", element: this.list, signed: true, actions: [pick, file, add], count: () => model.references.length };
+    dock.add(this.tab);
     for (const topic of ["references", "pictures", "role"] as const) model.on(topic, () => this.update());
     addEventListener("dragover", (event) => event.dataTransfer?.types.includes("Files") && event.preventDefault());
     addEventListener("drop", (event) => {
@@ -58,7 +58,7 @@ export class References {
       try {
         const picture = await encoded(file);
         this.model.say({ kind: "add_reference", name: file.name, picture });
-        this.tray.open(this.tab);
+        this.dock.open(this.tab);
       } catch {
         this.notices.show(`${file.name} cannot be read; add a picture, such as PNG or JPEG`, "bad");
       }
@@ -67,7 +67,7 @@ export class References {
 
   private update(): void {
     const { references } = this.model;
-    this.tray.update();
+    this.dock.update();
     if (!this.list.contains(document.activeElement) || document.activeElement?.tagName === "BUTTON") {
       const empty = h("li", { class: "nothing" }, "No reference pictures yet. Drop one here, paste it, or add a file.");
       this.list.replaceChildren(...(references.length ? references.map((one) => this.card(one)) : [empty]));
@@ -189,7 +189,7 @@ export class References {
     this.element.classList.toggle("picking", this.picking);
     this.tab.actions[0].setAttribute("aria-pressed", String(this.picking));
     if (on) this.notices.show(shown ? "Click on the hair in a reference picture" : "Show a reference picture first");
-    if (this.picking) this.tray.show(false); // it would cover pictures
+    if (this.picking) this.dock.uncover();
   }
 
   /** Sets the color of the hair to that of a picture under the pointer. */

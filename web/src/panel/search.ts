@@ -40,6 +40,9 @@ export class SettingSearch {
   private found: Found[] = [];
   private active = 0;
 
+  /** Shows the panel that it is in. */
+  wanted = (): void => {};
+
   /** reveal: shows a setting of the stage that was chosen; searched: called when a search begins or ends */
   constructor(
     private readonly model: Model,
@@ -57,7 +60,7 @@ export class SettingSearch {
   }
 
   private focus(): void {
-    if (document.documentElement.dataset["sheet"] !== undefined) document.documentElement.dataset["sheet"] = "settings";
+    this.wanted();
     this.input.focus();
     this.input.select();
   }

@@ -5,6 +5,7 @@ import "./settings.css";
 import { h } from "../dom";
 import type { File, Model, Place } from "../model";
 import { fewSettings } from "./aspects";
+import type { DockTab } from "./dock";
 import type { Field } from "./field";
 import { makeField } from "./make_field";
 import { FieldTools, isPinned, pin } from "./pins";
@@ -15,9 +16,12 @@ const FEW = 5; // settings that are shown of a stage in any case; its schema beg
 const FULL = 6; // settings that are shown with their sliders below their names; more get one line each
 
 export class Settings {
-  readonly element = h("aside", { class: "panel settings", "aria-label": "Settings" });
+  readonly element = h("div", { class: "settings" });
+  private readonly controls = h("fieldset", { class: "fields", "aria-label": "Settings of the stage" });
+  private readonly readOnly = h("p", { class: "hint", hidden: true }, "You can read and search the settings. To change them, ask to edit.");
+  readonly tab: DockTab = { title: "Settings", element: this.element, actions: [], count: () => 0, offered: () => Object.keys(this.model.documents).length > 0 };
   private readonly more = h("button", { type: "button", class: "quiet more" });
-  private readonly search: SettingSearch;
+  readonly search: SettingSearch;
   private fields: Field[] = [];
   private few = FEW; // of the fields, those that are shown in any case
   private readonly tools = new Map<Field, FieldTools>();
@@ -33,7 +37,7 @@ export class Settings {
   constructor(private readonly model: Model) {
     this.search = new SettingSearch(model, (name) => this.reveal(name), () => this.sift());
     for (const topic of ["document", "chosen", "names"] as const) model.on(topic, () => this.update());
-    model.on("role", () => this.element.toggleAttribute("inert", !model.role.leads));
+    model.on("role", () => this.sift());
     this.more.addEventListener("click", () => {
       if (!this.opened.delete(this.stage)) this.opened.add(this.stage);
       this.sift();
@@ -90,6 +94,7 @@ export class Settings {
       this.tools.clear();
       this.kinds.clear();
       this.fields.forEach((field, k) => this.tools.set(field, this.makeTools(field, this.kindOf(all[k].file, all[k].place))));
+      this.controls.replaceChildren(...this.fields.map((field) => field.element));
       const nothing = locks.length > 0 && !all.length;
       const of = locks.length === 1 ? "the selected lock" : `${locks.length} locks`;
       this.element.replaceChildren(
@@ -98,7 +103,8 @@ export class Settings {
         h("h2", {}, stageTitle(this.model)),
         locks.length ? h("p", { class: "alone" }, `of ${of} alone`) : "",
         nothing ? h("p", { class: "hint" }, "This stage has no setting that can vary by lock.") : "",
-        h("div", { class: "fields" }, ...this.fields.map((field) => field.element)),
+        this.readOnly,
+        this.controls,
         this.more,
       );
     }
@@ -139,7 +145,10 @@ export class Settings {
       field.update();
       shown++;
     });
-    const lines = shown > Math.max(FULL, this.few);
+    const { leads } = this.model.role;
+    this.controls.disabled = !leads;
+    this.readOnly.hidden = leads;
+    const lines = leads && shown > Math.max(FULL, this.few); // who cannot press what opens a line sees all of it
     this.fields.forEach((field, k) => this.tools.get(field)!.showFold(lines && !(this.first && k < this.few), this.unfolded.has(field.setting.name)));
     const hidden = this.fields.length - shown;
     this.more.toggleAttribute("hidden", this.search.on || this.fields.length <= this.few + 1 || (!hidden && !all));

@@ -8,23 +8,28 @@ const SHEETS = { "": "Picture", stages: "Stages", settings: "Settings", view: "V
 type Sheet = keyof typeof SHEETS;
 
 export class Sheets {
-  /** Whom to tell that a button opens a panel over the picture. */
-  chosen = (): void => {};
+  /** Whom to tell that the settings are wanted. */
+  settings = (): void => {};
   readonly element = h("nav", { class: "sheets", "aria-label": "Panels" });
   private readonly buttons: Record<string, HTMLElement> = {};
 
   constructor(model: Model) {
     for (const [name, label] of Object.entries(SHEETS)) {
-      this.buttons[name] = h("button", { type: "button", class: "quiet", onclick: () => (this.open(name as Sheet), this.chosen()) }, label);
+      this.buttons[name] = h("button", { type: "button", class: "quiet", onclick: () => this.choose(name as Sheet) }, label);
       this.element.append(this.buttons[name]);
     }
     this.open("");
     let stage = "";
     model.on("chosen", () => {
       const now = JSON.stringify(model.chosen);
-      if (stage && now !== stage) this.open("settings");
+      if (stage && now !== stage) this.choose("settings");
       stage = now;
     });
+  }
+
+  private choose(sheet: Sheet): void {
+    if (sheet === "settings") this.settings();
+    this.open(sheet);
   }
 
   open(sheet: Sheet): void {

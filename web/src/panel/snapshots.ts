@@ -1,4 +1,4 @@
-// Snapshots of the look: taken by a button or a key, and shown as a strip of thumbnails.
+// Snapshots of the look: taken by a button or a key, and shown as a list of thumbnails.
 
 import { h, iconButton } from "../dom";
 import type { Model } from "../model";
@@ -10,14 +10,15 @@ import { compareWith } from "./compare";
 import { openDialog } from "./dialog";
 import { bindKey, plainKey } from "./keys";
 import type { Look } from "./look";
-import type { Tray, TrayTab } from "./tray";
+import type { Notices } from "./status";
+import type { Dock, DockTab } from "./dock";
 
 type Kept = "take_snapshot" | "keep_take";
 
 export class Snapshots {
   readonly button = iconButton("snapshot", "Take a snapshot (S)", () => this.take());
   private readonly strip = h("ul", { class: "strip", "aria-label": "Snapshots" });
-  private readonly tab: TrayTab;
+  private readonly tab: DockTab;
   /** What is taken as soon as the groom is that of its settings. */
   private waiting: Kept | null = null;
   /** Plays the take of a snapshot. */
@@ -29,11 +30,12 @@ export class Snapshots {
     private readonly model: Model,
     private readonly viewer: Viewer,
     private readonly look: Look,
-    private readonly tray: Tray,
+    private readonly dock: Dock,
+    private readonly notices: Notices,
   ) {
     const take = h("button", { type: "button", class: "primary", onclick: () => this.take() }, "Take a snapshot");
-    this.tab = { title: "Snapshots", element: this.strip, actions: [take], count: () => model.snapshots.length };
-    tray.add(this.tab);
+    this.tab = { title: "Snapshots", element: this.strip, signed: true, actions: [take], count: () => model.snapshots.length };
+    dock.add(this.tab);
     for (const topic of ["snapshots", "pictures", "role"] as const) model.on(topic, () => this.update());
     this.button.hidden = take.hidden = true; // until a recipe is open
     model.on("document", () => {
@@ -52,12 +54,12 @@ export class Snapshots {
     if (this.waiting) return;
     const picture = thumbnail(this.viewer).toDataURL("image/png").split(",")[1];
     model.say({ kind, author: ownName(), look: this.look.state, picture });
-    if (kind === "take_snapshot") this.tray.open(this.tab); // it would cover the controls of live hair
+    if (kind === "take_snapshot") this.notices.show("A snapshot is taken (T shows it)"); // who changes settings stays with them
   }
 
   private update(): void {
     const { snapshots } = this.model;
-    this.tray.update();
+    this.dock.update();
     if (this.strip.contains(document.activeElement) && document.activeElement instanceof HTMLTextAreaElement) return;
     const empty = h("li", { class: "nothing" }, "No snapshots yet. A snapshot keeps the settings, the camera and the light, with a picture and a note.");
     const at = this.strip.scrollLeft;

@@ -7,7 +7,7 @@ import type { Json } from "../protocol";
 import type { DrawStatistics } from "../view/viewer";
 
 export class Status {
-  readonly element = h("footer", { class: "status" });
+  readonly element = h("div", { class: "status" });
   private readonly parts: Record<string, HTMLElement> = {};
 
   constructor(private readonly model: Model) {

@@ -1,4 +1,4 @@
-// The chart below the timeline: how fast tips and roots move in each frame, and the earlier takes of the shot, each with
+// The chart of a shot: how fast tips and roots move in each frame, and the earlier takes of the shot, each with
 // the frames that it has. A take is a button that compares it.
 
 import "./swing.css";
@@ -29,7 +29,7 @@ export function keptLabel({ number, changes, same_groom }: KeptRun): string {
 }
 
 export class SwingChart {
-  readonly element = h("div", { class: "swing", hidden: true });
+  readonly element = h("div", { class: "swing" });
   private readonly takes = h("div", { class: "takes" });
   private readonly chart = document.createElementNS(NS, "svg");
   private readonly scale = h("span", { class: "swing-scale" });
@@ -75,7 +75,7 @@ export class SwingChart {
   /** Draws the takes and the chart, with a mark at a frame. */
   show(frame: number): void {
     const { timeline, role } = this.model;
-    if (this.element.hasAttribute("hidden") || !timeline) return;
+    if (this.element.parentElement?.hidden || !timeline) return;
     const { compared } = this;
     this.takes.replaceChildren(...timeline.kept.map((take) => this.take(take, take === compared)));
     this.use.hidden = !compared;

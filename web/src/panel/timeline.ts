@@ -1,10 +1,11 @@
 // The frames of a shot or a cache: run, hold, go on, run again from a frame, scrub, and compare with another cache.
-// They are with the server: here are those about the one that is seen, as many as fit. A chart below shows their swing.
+// They are with the server: here are those about the one that is seen, as many as fit. A chart in the dock shows their swing.
 
 import "./floating_bar.css";
 import "./timeline.css";
 import { h, iconButton } from "../dom";
 import type { Model } from "../model";
+import type { DockTab } from "./dock";
 import { bindKey, plainKey } from "./keys";
 import { keptLabel, runHue, SwingChart } from "./swing";
 import type { Frame, Timeline } from "../protocol";
@@ -32,7 +33,11 @@ export class TimelineBar {
   private readonly rate = h("select", { class: "rate", "aria-label": "Playback rate (frames per second)" });
   private readonly against = h("select", { "aria-label": "Compare with a run or cache" });
   private readonly swing: SwingChart;
-  private readonly chart = iconButton("chart", "Swing and earlier runs", () => this.showSwing(this.swing.element.hasAttribute("hidden")));
+  private readonly chart = iconButton("chart", "Chart of the swing, and earlier runs", () => this.openChart());
+  /** The chart, in the dock. */
+  readonly tab: DockTab;
+  /** Shows the chart, or no longer. */
+  openChart = (_?: "shown"): void => {};
   /** What was asked for and has not come. */
   private readonly asked: Record<Layer, Set<number>> = { shot: new Set(), against: new Set() };
   private frame = 1;
@@ -50,6 +55,7 @@ export class TimelineBar {
     private readonly seen: (frame: Frame) => void,
   ) {
     this.swing = new SwingChart(model, (frame) => this.goTo(frame));
+    this.tab = { title: "Chart", element: this.swing.element, actions: [], count: () => 0, offered: () => model.timeline !== null, shown: () => this.swing.show(this.frame) };
     model.hear("frame", (frame) => this.add(frame));
     model.hear("hairs", ({ side }) => this.displaced(side));
     model.hear("locks", ({ side }) => this.displaced(side));
@@ -60,11 +66,9 @@ export class TimelineBar {
     this.slider.addEventListener("input", () => this.goTo(Number(this.slider.value)));
     this.run.addEventListener("click", () => this.press());
     const frames = h("div", { class: "frames" }, this.slider, this.runs);
-    this.element.append(this.run, this.again, this.watch, this.rate, frames, this.readout, this.against, this.chart, this.swing.element);
+    this.element.append(this.run, this.again, this.watch, this.rate, frames, this.readout, this.against, this.chart);
     this.rate.addEventListener("change", () => this.playing && (this.toggle(), this.toggle()));
     for (const topic of ["timeline", "role", "files"] as const) model.on(topic, () => this.update());
-    this.chart.setAttribute("aria-expanded", "false");
-    new ResizeObserver(() => this.tellHeight()).observe(this.element);
     bindKey({ section: "Frames", keys: "Space", does: "play the simulated frames, or stop", on: (event) => model.timeline !== null && plainKey(" ")(event), run: () => this.toggle() });
     const mark = (event: KeyboardEvent) => model.timeline && this.mark(event.key.toLowerCase() === "i" ? "in" : "out");
     bindKey({ section: "Frames", keys: "I and O", does: "set the in or the out point of playback to this frame; press again to remove it", on: plainKey("i", "o"), run: mark });
@@ -77,18 +81,7 @@ export class TimelineBar {
   private compare(name: string): void {
     const run = this.model.timeline?.kept.find(({ number }) => name === `run ${number}`);
     this.model.say(run ? { kind: "against", run: run.number } : { kind: "against", name });
-    if (run) this.showSwing(true);
-  }
-
-  /** Other panels stand above this one. */
-  private tellHeight(): void {
-    document.documentElement.style.setProperty("--timeline", `${this.element.offsetHeight + 8}px`);
-  }
-
-  private showSwing(on: boolean): void {
-    this.swing.element.toggleAttribute("hidden", !on);
-    this.chart.setAttribute("aria-expanded", String(on));
-    this.swing.show(this.frame);
+    if (run) this.openChart("shown");
   }
 
   /** Shows the frame that many frames on. */
@@ -203,7 +196,6 @@ export class TimelineBar {
   private update(): void {
     const { timeline, role } = this.model;
     this.element.toggleAttribute("hidden", !timeline);
-    document.documentElement.classList.toggle("with-timeline", timeline !== null);
     if (!timeline) return;
     if (timeline.key !== this.key) {
       this.key = timeline.key;
