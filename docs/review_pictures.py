@@ -313,7 +313,7 @@ def reach(page: Page, state: str) -> None:
             page.get("ringlet.timeline.goTo(ringlet.model.timeline.frames[1])")
             page.until("ringlet.timeline.settled")
         case "wipe":
-            page.page.get_by_label("Compare with a run or cache").select_option("run 1")
+            page.page.get_by_label("Compare runs and caches").select_option("run 1")
             page.until("ringlet.viewer.compared")
             page.page.get_by_label("Arrangement of the looks").select_option("wipe")
 

@@ -203,7 +203,7 @@ def test_regions_and_overlays_are_chosen_from_lists(opened: Any, folder: Path):
 
 def test_two_looks_are_shown_side_by_side(opened: Any):
     review: Review = opened(pixels=(ratio := 0.25))
-    other = review.page.get_by_label("Compare with another look")
+    other = review.page.get_by_label("Compare looks")
     other.select_option("now")
     review.until("ringlet.viewer.compared && ringlet.viewer.hair.b.table")
     picture = review.picture()

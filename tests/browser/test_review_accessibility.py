@@ -105,7 +105,7 @@ def test_dialogs_and_compared_looks_are_accessible(opened: Any):
     page.get_by_role("button", name="Save as…").click()
     checked.check("save as")
     page.keyboard.press("Escape")
-    page.get_by_label("Compare with another look").select_option("now")
+    page.get_by_label("Compare looks").select_option("now")
     review.until("ringlet.viewer.compared")
     for arrangement in ("split", "wipe"):
         page.get_by_label("Arrangement of the looks").select_option(arrangement)

@@ -56,7 +56,7 @@ def test_a_note_with_arrows_brings_back_its_view_and_is_exported(opened: Any, fo
     pixels = np.asarray(Image.open(tmp_path / "sheet.png").convert("RGB"), np.int64)
     marks = (np.abs(pixels - (255, 180, 94)).max(axis=2) < 25).nonzero()[0]  # of the arrow, in the row of notes
     assert len(marks) > 200 and marks.min() > 560
-    page.get_by_label("resolved").check()
+    page.get_by_label("Resolved").check()
     review.until("ringlet.model.notes[0].resolved")
     assert not review.errors
 

@@ -115,7 +115,7 @@ def test_four_looks_have_one_camera_and_their_labels(opened: Any):
 def test_the_difference_of_two_looks_is_where_they_differ(opened: Any):
     review: Review = opened(viewport={"width": 1000, "height": 640}, pixels=0.25)
     page = review.page
-    page.get_by_label("Compare with another look").select_option("now")
+    page.get_by_label("Compare looks").select_option("now")
     review.until("ringlet.viewer.compared && ringlet.viewer.hair.b.table")
     page.get_by_label("Arrangement of the looks").select_option("difference")
     saturation = lambda image: image.max(axis=2) - image.min(axis=2)  # noqa: E731

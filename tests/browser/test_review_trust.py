@@ -160,7 +160,7 @@ def test_two_looks_are_labelled_wiped_swapped_and_flipped(opened: Any):
     review.until("ringlet.model.documents.recipe.dirty")
     review.settled()
     now = review.picture()
-    page.get_by_label("Compare with another look").select_option("saved")
+    page.get_by_label("Compare looks").select_option("saved")
     review.until("ringlet.viewer.compared && ringlet.viewer.hair.b.table")
     assert page.locator(".look-label b").all_inner_texts() == ["now", "as saved"]
     page.get_by_label("Arrangement of the looks").select_option("wipe")

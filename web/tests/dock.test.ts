@@ -52,3 +52,12 @@ test("who only looks reads and searches the settings, and changes none", async (
   slide(slider("curl.width"), 0.02);
   expect(page.said("set")).toEqual([]);
 });
+
+test("no two buttons or lists of a shot have the same name", async () => {
+  await open("small.shot");
+  const all = [...document.querySelectorAll("button, select")].filter((one) => !one.closest("[hidden], .fields, .sheets"));
+  const names = all.map((one) => one.getAttribute("aria-label") ?? one.textContent);
+  expect(names.filter((name, k) => names.indexOf(name) !== k)).toEqual([]);
+  expect(names).toContain("Compare looks");
+  expect(names).toContain("Compare runs and caches");
+});

@@ -1,4 +1,4 @@
-// The tray: notes that are typed and reference pictures that are moved, while answers of the server arrive.
+// The dock: notes that are typed and reference pictures that are moved, while answers of the server arrive.
 
 import { expect, test } from "vitest";
 import type { Note, Reference } from "../src/protocol";
@@ -26,6 +26,15 @@ test("answers overwrite no note that is typed", async () => {
   text.blur();
   page.hear({ kind: "notes", notes: [note(page, "1", "first, softer"), note(page, "2", "second")] });
   expect(control<HTMLTextAreaElement>("Text of note 2").value).toBe("second");
+});
+
+test("a note says what it is about apart from whether it is resolved", async () => {
+  const page = await open();
+  press("t", {}, page.app.viewer.canvas);
+  const one = note(page, "1", "softer");
+  page.hear({ kind: "notes", notes: [{ ...one, lock: 3, look: { ...one.look, frame: 8 } }] });
+  expect(find(".card.note > .by").textContent).toBe("Written on lock 3, at frame 8");
+  expect(find(".card.note .resolves").textContent).toBe("Resolved");
 });
 
 test("answers overwrite no picture that is moved", async () => {

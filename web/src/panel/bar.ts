@@ -19,7 +19,7 @@ export class Bar {
   private readonly save = h("button", { type: "button", class: "primary", title: "Save (Ctrl+S)" }, "Save");
   private readonly as = h("button", { type: "button", class: "quiet" }, "Save as…");
   private readonly open = iconButton("folder", "Open another file (Ctrl+O)", () => openFile(this.model));
-  private readonly other = h("select", { "aria-label": "Compare with another look", class: "other-look" });
+  private readonly other = h("select", { "aria-label": "Compare looks", class: "other-look" });
 
   constructor(
     private readonly model: Model,
@@ -84,7 +84,7 @@ export class Bar {
     this.as.toggleAttribute("disabled", !role.leads);
     this.open.toggleAttribute("disabled", !role.leads);
     this.other.replaceChildren(
-      h("option", { value: "" }, "Compare with …"),
+      h("option", { value: "" }, "Compare looks …"),
       ...(this.model.others.length ? [h("option", { value: "end" }, "End the comparison")] : []),
       ...choices(this.model),
     );

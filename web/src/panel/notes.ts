@@ -238,7 +238,7 @@ export class Notes {
     text.addEventListener("change", () => change({ text: text.value }));
     const resolved = h("input", { type: "checkbox", checked: note.resolved });
     resolved.addEventListener("change", () => change({ resolved: resolved.checked }));
-    const where = [note.lock === null ? "" : `lock ${note.lock}`, note.look.frame === null ? "" : `frame ${note.look.frame}`].filter(Boolean).join(", ");
+    const where = [note.lock !== null && `on lock ${note.lock}`, note.look.frame !== null && `at frame ${note.look.frame}`].filter(Boolean).join(", ");
     const show = h("button", { type: "button", class: "quiet number", title: "Show what it is about", "aria-label": `Show note ${number}`, onclick: () => this.show(note) }, String(number));
     const kind = `card note${note.resolved ? " resolved" : ""}${note.id === this.opened ? " open" : ""}`;
     return h(
@@ -251,8 +251,9 @@ export class Notes {
         h("span", { class: "by", title: new Date(note.time).toLocaleString() }, [note.author, shortTime(note.time)].filter(Boolean).join(" · ")),
         iconButton("bin", `Delete note ${number}`, () => this.askDelete(note, number)),
       ),
+      where && h("p", { class: "by" }, `Written ${where}`),
       text,
-      h("div", { class: "card-head" }, h("label", { class: "resolves" }, resolved, "resolved"), h("span", { class: "by" }, where)),
+      h("label", { class: "resolves" }, resolved, "Resolved"),
     );
   }
 

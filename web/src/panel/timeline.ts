@@ -31,7 +31,7 @@ export class TimelineBar {
   );
   private readonly watch = iconButton("play", "Play the simulated frames (space)", () => this.toggle());
   private readonly rate = h("select", { class: "rate", "aria-label": "Playback rate (frames per second)" });
-  private readonly against = h("select", { "aria-label": "Compare with a run or cache" });
+  private readonly against = h("select", { "aria-label": "Compare runs and caches" });
   private readonly swing: SwingChart;
   private readonly chart = iconButton("chart", "Chart of the swing, and earlier runs", () => this.openChart());
   /** The chart, in the dock. */
@@ -224,7 +224,7 @@ export class TimelineBar {
     const caches = this.model.files.filter((name) => /\.usd[ac]?$/.test(name));
     const value = timeline.against;
     this.against.replaceChildren(
-      h("option", { value: "" }, value ? "end the comparison" : "compare with …"),
+      h("option", { value: "" }, value ? "End the comparison" : "Compare runs …"),
       ...group("Earlier runs", timeline.kept.map((kept): [string, string] => [`run ${kept.number}`, keptLabel(kept)])),
       ...group("Caches", caches.map((name): [string, string] => [name, name])),
     );
