@@ -199,6 +199,123 @@ def shot_of_three(head: bpy.types.Object) -> None:
     assert not of("shots").shots.message, of("shots").shots.message
 
 
+def make_character(name: str, x: float) -> bpy.types.Object:
+    """A head of 18 cm in a collection of its name: in centimetres, refined, with a shape key, below a rig of two bones
+    scaled by 0.01. In five frames it nods and its brow swells."""
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=24, ring_count=12, radius=9.0)
+    head = bpy.context.active_object
+    head.name = name
+    heights = {v.index: v.co.z for v in head.data.vertices}
+    for group, weight in (
+        ("scalp", lambda z: float(z > 1.0)),
+        ("neck", lambda z: min(max(0.5 - z / 12.0, 0.0), 1.0)),  # both bones bend a part of the scalp
+        ("skull", lambda z: min(max(0.5 + z / 12.0, 0.0), 1.0)),
+    ):
+        made = head.vertex_groups.new(name=group)
+        for row, z in heights.items():
+            made.add([row], weight(z), "REPLACE")
+    bpy.ops.object.armature_add(location=(x, 0.0, 0.0))
+    rig = bpy.context.active_object
+    rig.name, rig.scale = f"{name} rig", (0.01,) * 3
+    bpy.ops.object.mode_set(mode="EDIT")
+    neck = rig.data.edit_bones[0]
+    neck.name, neck.head, neck.tail = "neck", (0.0, 0.0, -9.0), (0.0, 0.0, -2.0)
+    skull = rig.data.edit_bones.new("skull")
+    skull.head, skull.tail, skull.parent = neck.tail, (0.0, 0.0, 9.0), neck
+    bpy.ops.object.mode_set(mode="OBJECT")
+    head.parent = rig
+    head.modifiers.new("rig", "ARMATURE").object = rig
+    head.modifiers.new("finer", "SUBSURF").levels = 1
+    head.shape_key_add(name="Basis")
+    brow = head.shape_key_add(name="brow")
+    for point in brow.data:
+        point.co *= 1.0 + 0.15 * max(-point.co.y, 0.0) / 9.0
+    for frame, part in ((1, 0.0), (5, 1.0)):
+        for bone, turn in (("neck", (0.3, 0.1, 0.0)), ("skull", (0.4, 0.0, 0.5))):
+            posed = rig.pose.bones[bone]
+            posed.rotation_mode, posed.rotation_euler = "XYZ", [part * one for one in turn]
+            posed.keyframe_insert("rotation_euler", frame=frame)
+        brow.value = part
+        brow.keyframe_insert("value", frame=frame)
+    own = bpy.data.collections.new(name)
+    bpy.context.scene.collection.children.link(own)
+    for thing in (head, rig):
+        own.objects.link(thing)
+        bpy.context.scene.collection.objects.unlink(thing)
+    bpy.context.scene.frame_set(1)
+    bpy.context.view_layer.update()
+    return head
+
+
+def production(folder: Path) -> dict:
+    """Two characters with rigs and shape keys, one of them the override of a library: their hair before and after it
+    is simulated, frame by frame, and in the .blend as it is opened again."""
+    library, path = folder / "library/kim.blend", folder / "shot/shot.blend"
+    for one in (library, path):
+        one.parent.mkdir()
+    kim = make_character("Kim", 0.0)
+    of("grooming").begin(kim, FEW, "Kim")
+    wait(settled)
+    bpy.ops.wm.save_as_mainfile(filepath=str(library))
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.preferences.addon_enable(module=MODULE)
+    scene = bpy.context.scene
+    scene.frame_start, scene.frame_end = 1, 5
+    with bpy.data.libraries.load(str(library), link=True, relative=True) as (_, target):
+        target.collections = ["Kim"]
+    scene.collection.children.link(target.collections[0])
+    target.collections[0].override_hierarchy_create(scene, bpy.context.view_layer, do_fully_editable=True)
+    bo = make_character("Bo", 0.5)
+    of("grooming").begin(bo, FEW.replace("length = 5", "length = 8"), "Bo")
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    wait(settled)
+    characters = list(of("identity").heads())
+    found: dict = {"names": sorted(one.name_full for one in characters), "still": {}, "moving": {}, "rest": {}}
+    for head in characters:
+        head.ringlet.recipe_guides.length__value = 0.06  # in any pose
+    scene.frame_set(4)
+    wait(settled)
+    found["messages"] = [
+        of("grooming").state_of(one).message + of("grooming").state_of(one).still for one in characters
+    ]
+    scene.frame_set(1)
+    for head in characters:
+        hairs = head.ringlet.hair_curves
+        rest = np.empty(3 * len(hairs.data.points), np.float32)
+        hairs.data.attributes["position"].data.foreach_get("vector", rest)
+        matrix = np.array(hairs.matrix_world)
+        rest = rest.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
+        found["rest"][head.name] = float(np.abs(points(hairs) - rest).max())
+    shots = of("shots").shots
+    for head in characters:
+        found["still"][head.name] = off_each(head, "hair_curves")
+        bpy.context.view_layer.objects.active = head
+        of("shots").begin_text(head)
+        head.ringlet.shot.ringlet_changes = json.dumps([{"set": ["preroll"], "value": 0}])
+        scene.frame_set(3, subframe=0.25)
+        bpy.ops.ringlet.simulate()
+        wait(lambda: shots.run is None)
+        found["frame"] = scene.frame_current_final
+        found["messages"].append(shots.message)
+        bpy.ops.ringlet.bake()
+        wait(lambda: shots.run is None)
+        found["messages"].append(shots.message)
+    bpy.ops.wm.save_mainfile()
+    opened(path)
+    for head in of("identity").heads():
+        found["moving"][head.name] = off_each(head, "hair_motion")
+    return found
+
+
+def off_each(head: bpy.types.Object, name: str) -> list[float]:
+    """The largest distance of a root of its curves from a head, in each of five frames [m]."""
+    found = []
+    for frame in (1, 2, 3, 4, 5):
+        bpy.context.scene.frame_set(frame)
+        found.append(off_skin(getattr(head.ringlet, name), head))
+    return found
+
+
 def opened(path: Path) -> bpy.types.Object:
     """A .blend that is opened, and the extension has looked at it; its head."""
     bpy.ops.wm.open_mainfile(filepath=str(path))
@@ -245,7 +362,7 @@ def moved(folder: Path) -> dict:
     found["back"] = [state.missing, off_through(head.ringlet.hair_motion, head)]
     (folder / "other").mkdir()
     bpy.ops.wm.save_as_mainfile(filepath=str(folder / "other/version 2.blend"))
-    found["saved as"] = (of("grooming").folder_of(head) / "cache.usdc").is_file()
+    found["saved as"] = [file.filepath.split("/")[2] for file in bpy.data.cache_files]
     (folder / "other/version 2.blend").rename(folder / "other/final.blend")
     head = opened(folder / "other/final.blend")
     found["renamed"] = (of("grooming").folder_of(head) / "cache.usdc").is_file()
@@ -620,7 +737,7 @@ def main(extension: str, action: str, folder: str) -> dict:
     """Installs the extension and performs an action."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bpy.ops.extensions.package_install_files(filepath=extension, repo="user_default", enable_on_install=True)
-    actions = (slider, stored, shot, cloth, images, killed, install, guides, heads, moved, linked, earlier)
+    actions = (slider, stored, shot, cloth, images, killed, install, guides, heads, moved, linked, earlier, production)
     return {act.__name__: act for act in actions}[action](Path(folder))
 
 

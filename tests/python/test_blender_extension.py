@@ -263,7 +263,7 @@ def test_a_simulated_head_plays_where_its_project_moves_and_says_what_is_missing
     assert found["baked"] == "" and all(path.startswith("//scene.ringlet/Kim-") for path in found["paths"])
     assert found["moved"] < 1e-4 and found["still"] < 1e-4
     assert "is missing; put it back" in found["missing"] and found["back"] == ["", pytest.approx(0.0, abs=1e-4)]
-    assert found["saved as"] and found["renamed"]
+    assert found["saved as"] == ["version 2.ringlet"] * 2 and found["renamed"]
     assert found["folders"] == ["final.blend", "final.ringlet"]
 
 
@@ -274,6 +274,16 @@ def test_a_linked_head_is_left_alone_and_its_override_has_hair_of_its_own(act):
     assert max(found["motion"], found["opened"]) < 1e-4 and found["length"] == pytest.approx(0.06)
     assert found["text"] and found["folder"] == "scene.ringlet"
     assert found["curves"] == ["Kim guides", "Kim hairs", "Kim locks", "Kim locks simulated"]
+
+
+@needs_blender
+def test_hair_of_two_rigged_characters_is_on_their_skin_before_and_after_it_is_simulated(act):
+    found = act("production")
+    assert found["names"] == ["Bo", "Kim"] and set(found["messages"]) == {""}
+    assert max(found["rest"].values()) < 1e-6  # at rest the groom is as Ringlet made it
+    for name in found["names"]:
+        assert max(found["still"][name]) < 5e-4 and max(found["moving"][name]) < 5e-4, found
+    assert found["frame"] == 3.25  # reading the scene leaves the frame
 
 
 @needs_blender

@@ -10,7 +10,9 @@ from mathutils import Matrix
 
 from .refused import Refused
 
-KINDS = {1: ("FLOAT", "value"), 2: ("FLOAT2", "vector"), 3: ("FLOAT_VECTOR", "vector")}
+# Of attributes, by the shape of a value: the type, and what it is called in there.
+KINDS = {(): ("FLOAT", "value"), (2,): ("FLOAT2", "vector"), (3,): ("FLOAT_VECTOR", "vector")}
+KINDS[4, 4] = ("FLOAT4X4", "value")
 MOST_SUBDIVISIONS = 3  # of curves in the viewport
 ID_HALVES = ("id_high", "id_low")  # Blender has no attributes of 64-bit integers
 
@@ -42,7 +44,7 @@ def draw_curls(scene: bpy.types.Scene) -> None:
 
 def set_attribute(data: bpy.types.Curves, name: str, values: np.ndarray, domain: str) -> None:
     """Writes an attribute; one of another type or domain is replaced."""
-    kind, key = ("INT", "value") if values.dtype.kind == "i" else KINDS[1 if values.ndim == 1 else values.shape[1]]
+    kind, key = ("INT", "value") if values.dtype.kind == "i" else KINDS[values.shape[1:]]
     found = data.attributes.get(name)
     if found is not None and (found.data_type, found.domain) != (kind, domain):
         data.attributes.remove(found)

@@ -14,9 +14,9 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from . import curves, folders, images, material, meshes, names
+from . import curves, folders, images, material, meshes, names, skin
 from .edited_text import stem_of
-from .identity import STILL, folder_of, head_with, new_text
+from .identity import STILL, folder_of, head_with, link_with, new_text
 from .link import Message
 from .properties import Document, keep_settings, scale
 from .refused import Refused
@@ -36,6 +36,7 @@ class State:
     sent:      what Ringlet has: fingerprints of files by name, for an epoch of the session and a folder
     message:   the error of the last request; empty when it went well
     missing:   a line of the simulated frames that are not there
+    still:     why the groom does not follow the skin before it is simulated; empty where it does
     conflicts: what Ringlet says of the groom
     progress:  stage in progress, and its fraction
     """
@@ -46,6 +47,7 @@ class State:
     of: tuple[int, str] = (0, "")
     message: str = ""
     missing: str = ""
+    still: str = ""
     conflicts: list[str] = field(default_factory=list)
     counts: dict[str, int] = field(default_factory=dict)
     progress: tuple[str, float] = ("", 1.0)
@@ -54,6 +56,8 @@ class State:
 states: dict[str, State] = {}  # of heads by id
 # Of meshes and guides by the number of the object, with fingerprints, until they change.
 _arrays: dict[int, tuple[dict[str, np.ndarray], str]] = {}
+# Of heads by the number of the object: the fingerprint of the rest pose, and its vertices where the head shows them.
+_skins: dict[int, tuple[str, np.ndarray]] = {}
 
 
 def state_of(head: bpy.types.Object) -> State:
@@ -125,7 +129,7 @@ def inputs_of(head: bpy.types.Object) -> str:
     """A digest of what a groom depends on besides its recipe. Raises Refused for a mesh, guides or images that are
     empty."""
     own = head.ringlet
-    parts = [head_arrays(head)[1], f"{own.show_hairs} {own.fraction:.6g} {scale():g}"]
+    parts = [head_arrays(head)[1], f"{own.show_hairs} {own.fraction:.6g} {scale():g} {meshes.is_subdivided(head)}"]
     if own.guides is not None:
         parts.append(guide_arrays(head)[1])
     parts += [f"{one.image.name} {images.stamp(one.image)}" for one in own.images if one.image]
@@ -139,6 +143,14 @@ def _digest(parts: list[str]) -> str:
 def head_arrays(head: bpy.types.Object) -> tuple[dict[str, np.ndarray], str]:
     """The rest pose of a head, and its fingerprint."""
     return _kept(head.session_uid, lambda: meshes.rest_arrays(head, rest_matrix(head)))
+
+
+def rest_skin(head: bpy.types.Object) -> np.ndarray:
+    """Vertices of a head in its rest pose where its modifiers show them; kept, since Blender evaluates it for them."""
+    digest = _digest([head_arrays(head)[1], *(f"{one.type} {one.show_viewport}" for one in head.modifiers)])
+    if _skins.get(head.session_uid, ("",))[0] != digest:
+        _skins[head.session_uid] = digest, meshes.rest_skin(head, rest_matrix(head))
+    return _skins[head.session_uid][1]
 
 
 def guide_arrays(head: bpy.types.Object) -> tuple[dict[str, np.ndarray], str]:
@@ -268,6 +280,7 @@ def _take(id: str, sent: tuple[str, str], inputs: str, message: Message) -> None
 
 def show(head: bpy.types.Object, message: Message) -> None:
     """Shows the curves of a groom as children of the head."""
+    state = state_of(head)
     arrays, hairs = message.arrays, any(name.startswith("hairs/") for name in message.arrays)
     color, fiber = message.header["settings"].get("color"), message.header["fiber"]
     dyed = color is not None and (color.get("dye") is not None or bool(color["dyes"]))
@@ -289,8 +302,7 @@ def show(head: bpy.types.Object, message: Message) -> None:
             continue
         if thing is None:
             thing = bpy.data.objects.new(f"{head.name} {name}", bpy.data.hair_curves.new(f"{head.name} {name}"))
-            for collection in head.users_collection or [bpy.context.scene.collection]:
-                collection.objects.link(thing)
+            link_with(head, thing)
             setattr(head.ringlet, pointer, thing)
             thing.hide_viewport = thing.hide_render = name != "hairs" and (hairs or name == "guides")
             thing.data.materials.append(made)
@@ -301,6 +313,9 @@ def show(head: bpy.types.Object, message: Message) -> None:
             thing.data.surface_uv_map = head.data.uv_layers.active.name
         thing.parent = head
         thing.matrix_parent_inverse = rest_matrix(head).inverted()
+        if "skinprim" in own:
+            state.still = skin.bind(thing.data, own["skinprim"], head, head_arrays(head)[0], rest_skin(head))
+            skin.follow(thing, head)
     if (locks := head.ringlet.lock_curves) is not None and head.ringlet.lock_motion is None:
         locks.hide_viewport = locks.hide_render = hairs
 

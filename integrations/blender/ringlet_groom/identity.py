@@ -12,7 +12,7 @@ from pathlib import Path
 import bpy
 from bpy.app.handlers import persistent
 
-from . import edited_text, folders, material, names
+from . import edited_text, folders, material, names, skin
 from .properties import KINDS
 from .refused import Refused
 
@@ -55,6 +55,13 @@ def folder_of(head: bpy.types.Object) -> Path:
 
 def _root(blend: str) -> Path:
     return folders.root_of(Path(blend)) if blend else Path(bpy.app.tempdir) / "ringlet"
+
+
+def link_with(head: bpy.types.Object, thing: bpy.types.Object) -> None:
+    """Puts an object into the collections of a head, or into the scene where all those are of a library."""
+    ours = [one for one in head.users_collection if one.library is None and one.override_library is None]
+    for collection in ours or [bpy.context.scene.collection]:
+        collection.objects.link(thing)
 
 
 def new_text(name: str, kind: str, head: bpy.types.Object, content: str) -> bpy.types.Text:
@@ -102,8 +109,11 @@ def _part(head: bpy.types.Object, id: str) -> None:
             continue
         if _is_anothers(thing) or any(getattr(other, name) == thing for other in others):
             setattr(own, name, _copied(thing, head))
-        elif thing.data.users > 1:
-            thing.data = thing.data.copy()
+        else:
+            if thing.data.users > 1:
+                thing.data = thing.data.copy()
+            if skin.MODIFIER in thing.modifiers:
+                skin.follow(thing, head)
         slots = getattr(own, name).data.materials
         for row, one in enumerate(slots):
             if one is not None and material.is_ours(one):
@@ -141,10 +151,11 @@ def _copied(thing: bpy.types.Object, head: bpy.types.Object) -> bpy.types.Object
     made = thing.copy()
     made.data = thing.data.copy()
     made.parent = head
-    for collection in head.users_collection or [bpy.context.scene.collection]:
-        collection.objects.link(made)
+    link_with(head, made)
     if made.type == "CURVES" and made.data.surface is not None:
         made.data.surface = head
+    if skin.MODIFIER in made.modifiers:
+        skin.follow(made, head)
     if _is_anothers(thing):
         _put_away(thing)
     return made
@@ -208,10 +219,11 @@ def path_of(file: bpy.types.CacheFile) -> Path:
 
 
 def mend_paths(head: bpy.types.Object) -> None:
-    """Lets a head play the files of its own folder where they have moved there, by paths that move with the .blend."""
+    """Lets a head play the files of its own folder where they are, by paths that move with the .blend."""
     for file in {file for thing in players(head) for file in cache_files(thing)}:
         place = folder_of(head) / re.split(r"[/\\]", file.filepath)[-1]
-        if bpy.data.filepath and place.is_file() and not (file.filepath.startswith("//") and path_of(file).is_file()):
+        own = file.filepath.startswith("//") and path_of(file).resolve() == place.resolve()
+        if bpy.data.filepath and place.is_file() and not own:
             file.filepath = bpy.path.relpath(str(place))
 
 
@@ -225,15 +237,24 @@ def _before_save(path: str) -> None:
 
 
 @persistent
+def _after_save(_path: str) -> None:
+    """Lets heads play the files next to the .blend that was saved, not those of the one before."""
+    for head in heads():
+        mend_paths(head)
+
+
+@persistent
 def _loaded(*_arguments: object) -> None:
     notes.clear()
 
 
 def register() -> None:
     bpy.app.handlers.save_pre.append(_before_save)
+    bpy.app.handlers.save_post.append(_after_save)
     bpy.app.handlers.load_post.append(_loaded)
 
 
 def unregister() -> None:
     bpy.app.handlers.save_pre.remove(_before_save)
+    bpy.app.handlers.save_post.remove(_after_save)
     bpy.app.handlers.load_post.remove(_loaded)

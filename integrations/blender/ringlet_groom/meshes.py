@@ -90,6 +90,32 @@ def readable(things: list[bpy.types.Object]) -> Iterator[None]:
             thing.hide_viewport = True
 
 
+@contextmanager
+def resting(thing: bpy.types.Object) -> Iterator[None]:
+    """Shows a mesh in its rest pose while the block runs: with no modifiers but those that change the topology, and
+    without shape keys."""
+    switched = [one for one in thing.modifiers if one.type not in GENERATING and one.show_viewport]
+    keys, hidden = (thing.show_only_shape_key, thing.active_shape_key_index), thing.hide_viewport
+    thing.hide_viewport = False
+    for one in switched:
+        one.show_viewport = False
+    thing.show_only_shape_key, thing.active_shape_key_index = True, 0
+    try:
+        yield
+    finally:
+        for one in switched:
+            one.show_viewport = True
+        (thing.show_only_shape_key, thing.active_shape_key_index), thing.hide_viewport = keys, hidden
+
+
+def rest_skin(thing: bpy.types.Object, matrix: Matrix) -> np.ndarray:
+    """Vertices of a mesh in the rest pose where the modifiers that change the topology show them, transformed by a
+    matrix; shape (n, 3) of the n vertices of the mesh itself, or fewer where there are fewer."""
+    with resting(thing):
+        seen = thing.evaluated_get(bpy.context.evaluated_depsgraph_get())
+        return _transformed(_positions(seen.data), matrix)[: len(thing.data.vertices)]
+
+
 def posed_points(thing: bpy.types.Object) -> np.ndarray:
     """Points of a mesh in world space at the current frame, shape (n, 3), with the modifiers that are on."""
     seen = thing.evaluated_get(bpy.context.evaluated_depsgraph_get())

@@ -144,13 +144,12 @@ class SculptGuides(OnHead, bpy.types.Operator):
     bl_idname = "ringlet.sculpt_guides"
     bl_label = "Sculpt Guides"
 
-    def act(self, context: bpy.types.Context, head: bpy.types.Object) -> None:
+    def act(self, _context: bpy.types.Context, head: bpy.types.Object) -> None:
         source = head.ringlet.guide_curves
         if source is None:
             raise Refused("There are no guides yet; wait for the groom")
         thing = bpy.data.objects.new(f"{head.name} sculpted guides", source.data.copy())
-        for collection in head.users_collection or [context.scene.collection]:
-            collection.objects.link(thing)
+        identity.link_with(head, thing)
         thing.parent, thing.matrix_parent_inverse = head, source.matrix_parent_inverse
         head.ringlet.guides = thing
 

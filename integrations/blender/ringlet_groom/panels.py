@@ -82,7 +82,7 @@ class Main(bpy.types.Panel):
             lines(layout, state.message, "INFO" if state.message.startswith("Wrote") else "ERROR")
         elif state.counts:
             layout.label(text=", ".join(f"{count:,} {name}" for name, count in state.counts.items()))
-        for sentence in [*filter(None, [identity.notes.get(own.id)]), *state.conflicts[:MOST_LINES]]:
+        for sentence in [*filter(None, [identity.notes.get(own.id), state.still]), *state.conflicts[:MOST_LINES]]:
             lines(layout, sentence, "INFO")
         row = layout.row(align=True)
         row.operator("ringlet.view")

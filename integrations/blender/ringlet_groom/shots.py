@@ -51,6 +51,7 @@ class Run:
     head:   its id
     files:  what moves, the head, then colliders and cloth, by the name of the file; each with its name in there
     points: of those in each frame so far, by the number of the object
+    before: the frame of the scene and the part of it, to return to
     """
 
     head: str
@@ -59,7 +60,7 @@ class Run:
     files: dict[str, list[tuple[str, bpy.types.Object]]]
     points: dict[int, list[np.ndarray]] = field(default_factory=dict)
     next_frame: int = 0
-    before: int = 0
+    before: tuple[int, float] = (0, 0.0)
     request: int = 0
 
 
@@ -102,7 +103,7 @@ def start(head: bpy.types.Object, *, resume: bool = False) -> None:
     begin_text(head)
     # Roots take over the motion that they have from the frame before the first.
     run = Run(head.ringlet.id, (scene.frame_start, scene.frame_end), resume, files)
-    run.next_frame, run.before = scene.frame_start - 1, scene.frame_current
+    run.next_frame, run.before = scene.frame_start - 1, (scene.frame_current, scene.frame_subframe)
     shots.run, shots.message, shots.notes, shots.stage, shots.part = run, "", [], "Reading the scene", 0.0
 
 
@@ -113,7 +114,7 @@ def cancel() -> None:
     if shots.run.request:
         session.cancel(shots.run.request)
     else:
-        bpy.context.scene.frame_set(shots.run.before)
+        _return(shots.run)
         _end("canceled")
 
 
@@ -128,11 +129,17 @@ def advance() -> None:
             _read_frame(run)
             shots.part = (run.next_frame - first + 1) / (last - first + 2)
         else:
-            bpy.context.scene.frame_set(run.before)
+            _return(run)
             _send(run)
     except (Refused, ReferenceError) as error:
-        bpy.context.scene.frame_set(run.before)
+        _return(run)
         _end(str(error) if isinstance(error, Refused) else "A mesh of the shot was removed; simulate again")
+
+
+def _return(run: Run) -> None:
+    """Shows the frame again that the scene was at."""
+    frame, part = run.before
+    bpy.context.scene.frame_set(frame, subframe=part)
 
 
 def _read_frame(run: Run) -> None:
@@ -265,8 +272,7 @@ def play(head: bpy.types.Object, still: str, moving: str, path: Path, prim: str)
         return
     thing = bpy.data.objects.new(f"{source.name} simulated", source.data.copy())
     thing.data.surface = None
-    for collection in head.users_collection or [bpy.context.scene.collection]:
-        collection.objects.link(thing)
+    identity.link_with(head, thing)
     follow(thing, open_cache(path), prim)
     setattr(head.ringlet, moving, thing)
     show_motion(head)
@@ -290,8 +296,7 @@ def play_cloth(head: bpy.types.Object, path: Path, cloths: list[tuple[str, bpy.t
         thing.constraints.clear()
         for one in [one for one in thing.modifiers if one.type not in meshes.GENERATING]:
             thing.modifiers.remove(one)  # the cache has what these move
-        for collection in head.users_collection or [bpy.context.scene.collection]:
-            collection.objects.link(thing)
+        identity.link_with(head, thing)
         thing.matrix_world = Matrix()
         modifier = follow(thing, file, f"{CLOTH_PRIMS}/{name}")
         modifier.read_data = {"VERT"}

@@ -72,7 +72,8 @@ class Groomer:
 
 def _curves(name: str, curves: Curves, groom: Groom) -> Arrays:
     """Arrays of curves: ``points`` (n, 3), ``counts``, ``ids``, ``radius`` of the points, and where there are any
-    ``uv`` of the roots, ``melanin``, ``redness`` and ``color`` (linear), one row a curve or a point."""
+    ``uv`` and ``skinprim`` (the face) of the roots, ``melanin``, ``redness`` and ``color`` (linear), one row a curve or
+    a point."""
     unit = groom.space.meters_per_unit
     arrays: Arrays = {
         "points": from_metres(curves.points, groom.space),
@@ -82,6 +83,8 @@ def _curves(name: str, curves: Curves, groom: Groom) -> Arrays:
     if "width" in curves.point:
         arrays["radius"] = (0.5 / unit * curves.point["width"]).astype(np.float32)
     bound = curves.curve
+    if groom.scalp.faces is not None and "root_triangle" in bound:
+        arrays["skinprim"] = groom.scalp.faces[bound["root_triangle"]].astype(np.int32)
     if groom.scalp.uv is not None and "root_triangle" in bound:
         uv = np.einsum("nk,nkd->nd", bound["root_barycentric"], groom.scalp.uv[bound["root_triangle"]])
         arrays["uv"] = uv.astype(np.float32)
