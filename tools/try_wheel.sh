@@ -13,6 +13,7 @@ from ringlet.data.share import share
 package = pathlib.Path(ringlet.__file__).parent
 assert "site-packages" in package.parts, f"{package} is not installed, but a working tree"
 assert share("examples/child").is_relative_to(package), "the examples are not in the wheel"
+assert (package / "_core.pyi").exists(), "the types of the core are not in the wheel"
 page = pathlib.Path(viewer.__file__).parent / "static/index.html"
 assert page.exists(), "the review page is not in the wheel"
 print(f"ringlet {ringlet.__version__}, {_core.simd()}, {_core.thread_count()} threads, {package}")
