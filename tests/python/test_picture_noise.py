@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import scipy
 from ringlet.picture import oidn
 from ringlet.picture.along import HairField
 from ringlet.picture.passes import Passes
@@ -57,6 +58,27 @@ def test_detail_of_hair_adds_no_light() -> None:
     passes[:, :, :, 3] = 1.0
     accumulated, upright = accumulate(passes), np.broadcast_to(np.float32([-1.0, 0.0]), (60, 60, 2))
     even = np.full((60, 60, 4), accumulated.mean().mean(axis=(0, 1)))
-    detail = accumulated.detail(even, HairField(np.ones((60, 60), np.float32), upright))
+    layers = np.zeros((60, 60, 5), np.float32)
+    detail = accumulated.detail(even, HairField(np.ones((60, 60), np.float32), upright, layers))
     assert np.abs(detail[10:-10, 12:-12, :3].mean()) < 0.01 * even[0, 0, :3].mean()
     assert detail[:, 12:-12:3, :3].mean() > 0.2 * even[0, 0, :3].mean()
+
+
+def test_relief_brings_back_the_edges_of_hairs_that_the_denoiser_blurred() -> None:
+    rng, size = np.random.default_rng(5), (80, 80)
+    depth = scipy.ndimage.gaussian_filter(rng.normal(size=size), (8.0, 0.6))  # hairs a pixel wide
+    depth /= depth.std()
+    share = np.where(np.arange(80) < 60, 1.0, 0.0)[None, :].repeat(80, axis=0).astype(np.float32)  # the rest is skin
+    truth = np.ones((*size, 4))
+    truth[:, :, :3] = 0.1 * (1.0 - 0.3 * share * np.clip(depth, -2.0, 2.0))[:, :, None]
+    shown = rng.gamma(0.5, 2.0, (6, *size, 1))  # as noisy as 8 samples of dark hair
+    passes = np.concatenate([truth[:, :, :3] * shown, np.ones((6, *size, 1))], axis=3)
+    blurred = np.full((*size, 4), (0.1, 0.1, 0.1, 1.0))
+    layers = np.stack([share, depth, 0.0 * depth, 0.0 * depth, 0.0 * depth], axis=2).astype(np.float32)
+    upright = np.broadcast_to(np.float32([-1.0, 0.0]), (*size, 2))
+    sharp = accumulate(passes).relief(blurred, HairField(share, upright, layers))
+    hair = np.s_[8:-8, 8:52, 0]
+    assert np.corrcoef(sharp[hair].ravel(), truth[hair].ravel())[0, 1] > 0.8
+    assert 0.6 < sharp[hair].std() / truth[hair].std() < 1.2
+    assert sharp[hair].mean() == pytest.approx(0.1, rel=0.05)
+    assert np.array_equal(sharp[:, 60:], blurred[:, 60:])

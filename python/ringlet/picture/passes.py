@@ -9,10 +9,13 @@ import scipy
 from numpy.typing import NDArray
 
 from ringlet.picture.along import HairField
+from ringlet.picture.regression import regressed
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 DARKEST = 1e-4  # luminance below which detail has no color of its surroundings
 BRIGHTEST = 2.0  # deviations of detail beyond which it is a speck
+DARKEST_RELIEF, BRIGHTEST_RELIEF = 1e-3, 4.0  # luminance, and its ratio to the denoised mean: beyond it is noise
+RELIEF = 0.25, 3.0  # least and largest ratio that the edges of hairs make
 DETAIL_WINDOW = 6.0  # deviation of the window that separates detail from noise [pixels]
 
 
@@ -59,6 +62,18 @@ class Passes:
         before, after = (scipy.ndimage.gaussian_filter(light, (2.5, 2.5, 0.0)) for light in (total, total - firefly))
         spread = np.clip(before / np.maximum(after, 1e-9), 1.0, 2.0)
         return [spread * (self._sums[half] - firefly * (self._half_of_brightest == half)) for half in (0, 1)]
+
+    def relief(self, denoised: NDArray[np.floating], hair: HairField) -> NDArray[np.floating]:
+        """The denoised mean with the edges of single hairs: what depth and run of the hair explain of the passes.
+
+        Light is scaled, and its color kept. Needs at least two passes.
+        """
+        even, odd = self.without_specks()
+        light, clean = (image[:, :, :3] @ LUMINANCE for image in (denoised, (even + odd) / self.count))
+        relative = np.clip(clean / np.maximum(light, DARKEST_RELIEF), 0.0, BRIGHTEST_RELIEF)
+        scale = 1.0 + hair.share * regressed(relative, hair.layers, hair.share)
+        scaled = denoised[:, :, :3] * np.clip(scale, *RELIEF)[:, :, None]
+        return np.concatenate([scaled, denoised[:, :, 3:]], axis=2)
 
     def detail(self, denoised: NDArray[np.floating], hair: HairField) -> NDArray[np.float64]:
         """What both halves have in common beyond the denoised mean, such as single hairs; needs two passes.

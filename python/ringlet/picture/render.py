@@ -103,7 +103,8 @@ def trace_growing(
 def _denoised(scene: Scene, accumulated: Passes) -> NDArray[np.float32]:
     """The mean of at least three passes without noise, with the detail of its hair."""
     denoised, hair = oidn.denoise(accumulated.mean()), hair_field(mitsuba(), scene)
-    return np.asarray(denoised + hair.share[:, :, None] * accumulated.detail(denoised, hair), np.float32)
+    sharp = accumulated.relief(denoised, hair)
+    return np.asarray(sharp + hair.share[:, :, None] * accumulated.detail(sharp, hair), np.float32)
 
 
 def layers_of(scene: Scene, camera: Camera, color: HairColor | None, pose: Pose, later: Later | None = None) -> Layers:
