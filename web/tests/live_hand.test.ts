@@ -118,3 +118,27 @@ test("the hand is put away when hair is at rest again", async () => {
   hand.button.click();
   expect(hand.on).toBe(false);
 });
+
+test("next to another look, the hand touches the open one where it is drawn, and no hair where the other is", async () => {
+  const page = await withHand();
+  const { viewer } = page.app;
+  const alone = tip(page);
+  for (const side of ["a", "b"] as const) page.hear({ kind: "compared", side, name: side, detail: "", settings: {}, take: "" });
+  expect(viewer.looks.split).toBe(true);
+  const seen = viewer.seenAt(alone.place)!;
+  expect(Math.hypot(seen.x - alone.x, seen.y - alone.y)).toBeGreaterThan(50);
+  point("pointerdown", seen);
+  const first = page.last("touch_hair");
+  expect(new Vector3(...first.at!).distanceTo(alone.place)).toBeLessThan(0.03);
+  point("pointermove", { x: seen.x + 20, y: seen.y });
+  vi.advanceTimersByTime(50);
+  const there = viewer.seenAt(new Vector3(...page.last("touch_hair").at!))!;
+  const from = viewer.seenAt(new Vector3(...first.at!))!;
+  expect(there.x - from.x).toBeCloseTo(20, 3);
+  point("pointerup", seen);
+  const before = page.said("touch_hair").length;
+  const { clear } = viewer;
+  point("pointerdown", { x: seen.x + clear.width / 2, y: seen.y }); // the same place on the other look
+  vi.advanceTimersByTime(50);
+  expect(page.said("touch_hair").length).toBe(before);
+});

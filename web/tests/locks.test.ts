@@ -1,5 +1,6 @@
 // Locks: chosen by keys and a lasso, isolated, dragged by their handles, and given values of their own.
 
+import { Vector3 } from "three";
 import { expect, test } from "vitest";
 import { check, control, drag, find, press, slide, slider, texts } from "./controls";
 import { open, type Page } from "./page";
@@ -81,4 +82,21 @@ test("a value of several locks is set and reverted in one step", async () => {
   const { changes, gesture } = page.last("set");
   expect(changes).toEqual([[["curl", "width", "lock", a], null], [["curl", "width", "lock", b], null]]);
   expect(page.said("set").filter((one) => one.gesture === gesture).length).toBe(1); // one step of undo
+});
+
+test("next to another look, a click chooses a lock of the open one where it is drawn", async () => {
+  const page = await open();
+  const { viewer, lock } = page.app;
+  for (const side of ["a", "b"] as const) page.hear({ kind: "compared", side, name: side, detail: "", settings: {}, take: "" });
+  expect(viewer.looks.split).toBe(true);
+  const { points, offsets } = viewer.hair.a.locks!;
+  const highest = Array.from({ length: offsets.length - 1 }, (_, k) => k).sort((a, b) => points[3 * offsets[b + 1] - 2] - points[3 * offsets[a + 1] - 2])[0];
+  const seen = viewer.seenAt(new Vector3().fromArray(points, 3 * (offsets[highest + 1] - 1)))!;
+  const click = (x: number) => {
+    for (const name of ["pointerdown", "click"]) viewer.canvas.dispatchEvent(new PointerEvent(name, { clientX: x, clientY: seen.y, bubbles: true }));
+  };
+  click(seen.x + viewer.clear.width / 2); // the same place on the other look
+  expect(lock.ids).toEqual([]);
+  click(seen.x);
+  expect(lock.ids).toEqual([ids(page)[highest]]);
 });

@@ -10,6 +10,8 @@ import { bindKey } from "./keys";
 export abstract class HandTool {
   readonly element: HTMLElement;
   on = false;
+  /** Whether it is also for the open look among others that it is compared with. */
+  protected readonly amongLooks: boolean = false;
   /** Whom to tell that the tool was taken up or laid down. */
   readonly changed: ((on: boolean) => void)[] = [];
   protected readonly title: HTMLElement;
@@ -58,7 +60,7 @@ export abstract class HandTool {
 
   /** Whether a pointer is for the tool; with Alt it turns the head. */
   private takes(event: PointerEvent): boolean {
-    return this.on && event.button === 0 && !event.altKey && !onButton(event) && !this.viewer.compared && this.model.role.leads;
+    return this.on && event.button === 0 && !event.altKey && !onButton(event) && (this.amongLooks || !this.viewer.compared) && this.model.role.leads;
   }
 
   /** The pointer is the tool's alone until it is lifted. */

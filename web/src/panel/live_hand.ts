@@ -4,6 +4,7 @@ import { Vector3 } from "three";
 import { h } from "../dom";
 import type { Model } from "../model";
 import type { TouchHair } from "../protocol";
+import type { Size } from "../view/box";
 import { inPlane, pick } from "../view/pick";
 import type { Viewer } from "../view/viewer";
 import { BrushTip } from "./brush_tip";
@@ -21,6 +22,7 @@ const PRESSED = 0.5; // how deep a palm is in the hair, by its radius
 
 export class LiveHand extends HandTool {
   readonly button = h("button", { type: "button", class: "quiet", title: "Pull a lock, comb, or pat the hair", "aria-pressed": "false", onclick: () => this.show(!this.on) }, "Hand");
+  protected override readonly amongLooks = true;
   private readonly tip: BrushTip;
   private tool: Tool = "pull";
   /** Whether the button of the pointer is down. */
@@ -62,7 +64,11 @@ export class LiveHand extends HandTool {
 
   /** The place of hair under the pointer, as it is seen. */
   private under(at: { x: number; y: number }): Vector3 | null {
-    const { hair, camera, size, controls } = this.viewer;
+    return this.viewer.onOpenLook(at, (place, size) => this.nearest(place, size));
+  }
+
+  private nearest(at: { x: number; y: number }, size: Size): Vector3 | null {
+    const { hair, camera, controls } = this.viewer;
     const points = hair.a.seen;
     if (!points || !hair.a.locks) return null;
     const reach = this.tool === "pull" ? 12 : Math.max(0.5 * this.tip.pixels(controls.target), 8);
@@ -82,12 +88,18 @@ export class LiveHand extends HandTool {
   }
 
   protected move(event: PointerEvent): void {
-    const { camera, size } = this.viewer;
+    const { viewer } = this;
+    const { camera, size } = viewer;
     const at = this.viewer.at(event);
     if (this.down) {
       event.stopPropagation();
-      if (at.x < 0 || at.y < 0 || at.x > size.width || at.y > size.height) return this.lift();
-      this.place = this.place ? inPlane(at, this.place, camera, size) : this.under(at); // a stroke may begin off the hair
+      if (at.x < 0 || at.y < 0 || at.x > size.width || at.y > size.height) {
+        this.lift();
+        return;
+      }
+      const { place } = this;
+      const along = () => viewer.onOpenLook(at, (there, part) => inPlane(there, place!, camera, part), true);
+      this.place = place ? along() : this.under(at); // a stroke may begin off the hair
       if (!this.timer) this.send();
     }
     if (this.tool === "pull") this.tip.hide();

@@ -7,6 +7,7 @@ import type { Model, Place } from "../model";
 import { onButton } from "./hand_tool";
 import { bindKey, plainKey } from "./keys";
 import type { Json } from "../protocol";
+import type { Size } from "../view/box";
 import { inPlane, onScreen, pick } from "../view/pick";
 import type { Viewer } from "../view/viewer";
 
@@ -239,8 +240,10 @@ export class LockTool {
 
   private click(event: MouseEvent): void {
     const { locks } = this.viewer.hair.a;
-    if (!locks || this.viewer.looks.split || this.viewer.looks.difference || !this.model.documents.recipe || this.busy()) return;
-    const row = pick(locks.points, locks.offsets, this.viewer.camera, this.viewer.size, this.viewer.at(event))?.lock ?? -1;
+    if (!locks || this.viewer.looks.difference || !this.model.documents.recipe || this.busy()) return;
+    const { viewer } = this;
+    const row = viewer.onOpenLook(viewer.at(event), (at, size) => pick(locks.points, locks.offsets, viewer.camera, size, at)?.lock ?? -1);
+    if (row === null) return; // another look is there
     const more = event.shiftKey || event.ctrlKey || event.metaKey;
     if (!more) this.choose(row);
     else if (row >= 0) this.choose(...(this.rows.includes(row) ? this.rows.filter((one) => one !== row) : [...this.rows, row]));
@@ -280,6 +283,16 @@ export class LockTool {
   }
 
   private inLasso(path: { x: number; y: number }[]): number[] {
+    const [first] = path;
+    const seen = this.viewer.onOpenLook(first, (at, size) => {
+      const inPart = path.map(({ x, y }) => ({ x: x - first.x + at.x, y: y - first.y + at.y }));
+      return this.tipsWithin(inPart, size);
+    });
+    return seen ?? [];
+  }
+
+  /** Locks whose tips are seen within a line around them, by the camera as it is. */
+  private tipsWithin(path: { x: number; y: number }[], size: Size): number[] {
     const { locks } = this.viewer.hair.a;
     if (!locks) return [];
     const { camera } = this.viewer;
@@ -289,7 +302,7 @@ export class LockTool {
     for (let row = 0; row + 1 < locks.offsets.length; row++) {
       const tip = new Vector3().fromArray(locks.points, 3 * (locks.offsets[row + 1] - 1));
       const inFront = tip.clone().sub(middle).dot(toEye) > -0.02;
-      if (inFront && isInside(onScreen(tip, camera, this.viewer.size), path)) found.push(row);
+      if (inFront && isInside(onScreen(tip, camera, size), path)) found.push(row);
     }
     return found;
   }

@@ -9,3 +9,7 @@ export interface Box extends Size {
   x: number;
   y: number;
 }
+
+export function contains({ x, y, width, height }: Box, at: { x: number; y: number }): boolean {
+  return at.x >= x && at.y >= y && at.x < x + width && at.y < y + height;
+}

@@ -5,7 +5,7 @@ import type { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js
 import { h } from "../dom";
 import type { Locks, Shared } from "../protocol";
 import type { Pose } from "./body";
-import type { Box, Size } from "./box";
+import { type Box, contains, type Size } from "./box";
 import { contextOf, drawsInSoftware, NO_PICTURE, writeNoPicture } from "./context";
 import type { Film } from "./film";
 import type { Hair } from "./hair";
@@ -218,6 +218,22 @@ export class Viewer {
     const { x, y } = onScreen(place, camera, cell.canvas);
     painter.aimAtAll(view);
     return { x: cell.canvas.x + x, y: cell.canvas.y + y };
+  }
+
+  /**
+   * Does something with the open look as it is drawn: the camera is that of its part of the picture. at: a place in the
+   * picture [pixels], which is handed on as one of that part; null where another look is there, unless it is held from
+   * there on
+   */
+  onOpenLook<T>(at: { x: number; y: number }, does: (at: { x: number; y: number }, size: Size) => T, held = false): T | null {
+    const { looks, view, painter } = this;
+    const cell = looks.cells(this.size, this.clear).find(({ side }) => side === "a");
+    if (!cell || !(held || contains(cell.box, at))) return null;
+    view.aim(cell);
+    this.camera.updateMatrixWorld();
+    const done = does({ x: at.x - cell.canvas.x, y: at.y - cell.canvas.y }, cell.canvas);
+    painter.aimAtAll(view);
+    return done;
   }
 
   /** Does something with the open look alone, after which the camera is where it was. */
