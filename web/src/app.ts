@@ -62,14 +62,16 @@ export class App {
     const people = new People(model, () => this.look, this.notices);
     this.problems = new ProblemBar(model, people.questions);
     root.append(picture);
-    const viewer = (this.viewer = new Viewer(picture));
+    this.viewer = new Viewer(picture);
+    const { viewer } = this;
     this.fillPicture();
     const reload = h("button", { type: "button", class: "quiet", onclick: () => location.reload() }, "Load the page again");
     viewer.onLost = () => this.problems.keep("picture", LOST_PICTURE, reload);
 
     // What is in the hand, and how the groom is looked at
     this.lock = new LockTool(model, viewer);
-    const live = (this.live = new LiveHair(model, viewer)); // a frame is shown again once hair is at rest
+    this.live = new LiveHair(model, viewer); // before the timeline: a frame is shown again once hair is at rest
+    const { live } = this;
     new LiveSides(model, viewer);
     this.timeline = new TimelineBar(model, viewer, (frame) => this.status.simulated(frame.statistics));
     const sheets = new Sheets(model);
@@ -88,7 +90,8 @@ export class App {
     this.look = new Look(model, viewer, viewbar, this.lock, this.timeline, this.notices);
 
     // What is kept next to the recipe
-    const dock = (this.dock = new Dock(() => this.look.introduce()));
+    this.dock = new Dock(() => this.look.introduce());
+    const { dock } = this;
     const settings = new Settings(model);
     dock.add(settings.tab);
     dock.add(this.timeline.tab);

@@ -274,7 +274,10 @@ test("the picture of hair that stands is left to get finer", async () => {
   const [page, rods] = await moving();
   vi.advanceTimersByTime(1000);
   const carry = vi.spyOn(page.app.viewer, "carry");
-  const step = (motion: Matrix4) => (page.hear(stepOf(rods, motion)), vi.advanceTimersByTime(50));
+  const step = (motion: Matrix4) => {
+    page.hear(stepOf(rods, motion));
+    vi.advanceTimersByTime(50);
+  };
   step(TURN);
   expect(carry).not.toHaveBeenCalled();
   step(TURN.clone().setPosition(0.02, 0, 0));

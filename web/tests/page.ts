@@ -105,14 +105,17 @@ export class Page {
 function changed(table: Record<string, Json>, place: Place, value: Json | undefined): Record<string, Json> {
   const copy = structuredClone(table);
   let at = copy as Record<string | number, Json>;
-  for (const part of place.slice(0, -1)) at = (at[part] ??= {}) as Record<string | number, Json>;
+  for (const part of place.slice(0, -1)) {
+    at[part] ??= {};
+    at = at[part] as Record<string | number, Json>;
+  }
   if (value === undefined) delete at[place.at(-1)!];
   else at[place.at(-1)!] = value;
   return copy;
 }
 
 /** Listeners of the window, which outlive a page. */
-let listening: (() => void)[] = [];
+const listening: (() => void)[] = [];
 
 /** Opens a file of the small example in a page of its own. change: of what the server says; copied: in a copy of a tab */
 export async function open(example: Example = "small.recipe", change = (message: FromServer) => message, copied = false): Promise<Page> {

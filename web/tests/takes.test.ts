@@ -16,8 +16,8 @@ const FPS = 24;
 function takeOf(ids: Float64Array, more: Partial<LiveTake> = {}): LiveTake {
   const count = ids.length;
   const points = Array.from({ length: count * VERTICES }, (_, i) => [0.02 * Math.sin(i), 0.1 - 0.02 * (i % VERTICES), 0.01 * Math.floor(i / VERTICES)]).flat();
-  const heads = STEPS.map((step) => [1, 0, 0, 0.01 * step, 0, 1, 0, 0, 0, 0, 1, 0]).flat();
-  const moved = STEPS.map((step) => points.map((_, i) => (i % 3 ? 0 : -10 * step))).flat();
+  const heads = STEPS.flatMap((step) => [1, 0, 0, 0.01 * step, 0, 1, 0, 0, 0, 0, 1, 0]);
+  const moved = STEPS.flatMap((step) => points.map((_, i) => (i % 3 ? 0 : -10 * step)));
   return {
     ...{ kind: "live_take", side: "b", id: "one", fps: FPS, first: null, pivot: [0, -1, 0], unit: UNIT },
     ...{ points: Float32Array.from(points), along: Float32Array.from([0, 0.1, 0.5, 1]), carrier: Uint32Array.from({ length: count }, (_, k) => k) },

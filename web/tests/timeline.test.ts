@@ -42,7 +42,10 @@ test("frames are played between in and out points, at a rate", async () => {
   expect(timeline.current).toBe(3);
   const played: (number | null)[] = [];
   const show = timeline.show.bind(timeline);
-  vi.spyOn(timeline, "show").mockImplementation((frame) => (show(frame), played.push(timeline.current)));
+  vi.spyOn(timeline, "show").mockImplementation((frame) => {
+    show(frame);
+    played.push(timeline.current);
+  });
   choose(control("Playback rate (frames per second)"), "60");
   press(" ", {}, viewer.canvas);
   vi.advanceTimersByTime(350);

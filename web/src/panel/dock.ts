@@ -109,9 +109,9 @@ export class Dock {
   }
 
   private toggle(): void {
-    if (this.current?.signed) return this.goBack();
     const kept = this.kept ?? this.tabs.find(({ tab }) => tab.signed)?.tab;
-    if (kept) this.open(kept);
+    if (this.current?.signed) this.goBack();
+    else if (kept) this.open(kept);
   }
 
   /** Arrows go from tab to tab. */

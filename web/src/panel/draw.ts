@@ -1,7 +1,7 @@
 // Drawing on the scalp: a stroke becomes the helper curve that a setting names, such as a part line. A guide begins on the
 // scalp and may leave it: off the skin it is drawn in the plane of the picture through its root.
 
-import { BufferGeometry, Line, LineBasicMaterial, Vector3 } from "three";
+import { BufferGeometry, Line, LineBasicMaterial, type Vector3 } from "three";
 import { h } from "../dom";
 import type { Model, Place } from "../model";
 import { inPlane } from "../view/pick";

@@ -81,7 +81,10 @@ export abstract class Field {
 
   /** Tells the server several values as one step of undo. */
   protected put(changes: [Place, Json][], resting = true): void {
-    if (!this.model.role.leads) return this.update(); // shows again what holds
+    if (!this.model.role.leads) {
+      this.update(); // shows again what holds
+      return;
+    }
     if (!this.gesture) this.gesture = this.model.newGesture();
     this.waiting = changes;
     const message = () => {

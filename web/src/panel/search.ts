@@ -110,7 +110,8 @@ export class SettingSearch {
     if (step && this.found.length) this.active = (this.active + step + this.found.length) % this.found.length;
     else if (event.key === "Enter") {
       event.preventDefault(); // the setting that gets the focus does not take the key
-      return this.go(this.active);
+      this.go(this.active);
+      return;
     } else if (event.key === "Escape") {
       this.end();
       this.input.blur();

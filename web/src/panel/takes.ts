@@ -72,7 +72,11 @@ export class TakePlayer {
       dialog.close();
     };
     make.addEventListener("click", say);
-    name.addEventListener("keydown", (event) => event.key === "Enter" && (event.preventDefault(), say()));
+    name.addEventListener("keydown", (event) => {
+      if (event.key !== "Enter") return;
+      event.preventDefault();
+      say();
+    });
     name.focus();
   }
 

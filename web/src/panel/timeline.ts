@@ -61,13 +61,20 @@ export class TimelineBar {
     model.hear("locks", ({ side }) => this.displaced(side));
     model.on("measured", () => model.overlay && this.overlay());
     model.on("overlay", () => this.overlay());
-    model.on("live", () => (this.displaced("a"), this.draw()));
+    model.on("live", () => {
+      this.displaced("a");
+      this.draw();
+    });
     this.against.addEventListener("change", () => this.compare(this.against.value));
     this.slider.addEventListener("input", () => this.goTo(Number(this.slider.value)));
     this.run.addEventListener("click", () => this.press());
     const frames = h("div", { class: "frames" }, this.slider, this.runs);
     this.element.append(this.run, this.again, this.watch, this.rate, frames, this.readout, this.against, this.chart);
-    this.rate.addEventListener("change", () => this.playing && (this.toggle(), this.toggle()));
+    this.rate.addEventListener("change", () => {
+      if (!this.playing) return;
+      this.toggle(); // and again, at the new rate
+      this.toggle();
+    });
     for (const topic of ["timeline", "role", "files"] as const) model.on(topic, () => this.update());
     bindKey({ section: "Frames", keys: "Space", does: "play the simulated frames, or stop", on: (event) => model.timeline !== null && plainKey(" ")(event), run: () => this.toggle() });
     const mark = (event: KeyboardEvent) => model.timeline && this.mark(event.key.toLowerCase() === "i" ? "in" : "out");

@@ -62,8 +62,9 @@ export class Stage {
   /** Moves all bodies on one side by a pose of the head, but for the last ones, whose points what the hair wears has. */
   pose(side: Side, pose: Pose, worn: Float32Array): void {
     const bodies = [...this.bodies].sort(([i], [j]) => j - i).map(([, body]) => body);
-    let [end, sum] = [worn.length, 0];
-    const fits = !end || bodies.some((body) => (sum += 3 * body.points) === end);
+    let end = worn.length;
+    const ends = bodies.map((_, k) => 3 * bodies.slice(0, k + 1).reduce((sum, body) => sum + body.points, 0));
+    const fits = !end || ends.includes(end);
     if (!fits) end = 0; // the hair of another groom wears something else
     for (const body of bodies) {
       if (end) body.place(side, worn.slice(end - 3 * body.points, end));
