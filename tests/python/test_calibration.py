@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import select
+import subprocess
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -129,3 +131,16 @@ def test_a_process_that_fails_leaves_the_default(groom: Groom, monkeypatch: pyte
     one._process.wait()
     assert one.poll() is None
     assert one._process is None
+
+
+def test_a_calibration_ends_with_a_server_that_is_killed() -> None:
+    begins = f"import os, subprocess; subprocess.Popen([*{calibrator.COMMAND!r}, str(os.getpid())])"
+    waits = f"{begins}; print('began', flush=True); input()"
+    command = [calibrator.sys.executable, "-c", waits]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as server:
+        assert server.stdout is not None
+        assert server.stdout.readline() == "began\n"
+        server.kill()
+        ended = select.select([server.stdout], [], [], 60.0)[0]  # once no process writes there
+        assert ended
+        assert server.stdout.read() == ""

@@ -6,6 +6,8 @@ import hashlib
 import os
 import pickle
 import sys
+import threading
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -37,6 +39,7 @@ ITERATIONS = 6  # of a step in contact
 LEAST_SWING = 1e-3  # of tips in contact, below which nothing is found [m]
 SOFTEST, FIRMEST = 1e-5, 1e-2  # that is looked for [N/m²]
 HALVINGS = 6  # of that range, on a logarithmic scale: to 6 %
+LOOKS = 0.5  # how often a process looks whether its parent is there [s]
 
 
 @dataclass(frozen=True)
@@ -126,8 +129,9 @@ def calibrate(
     return Calibration(groom, material, tuple(clothes), gravity, fps, touching).contact()
 
 
-def serve() -> None:
-    """Reads a pickled ``Calibration`` from the input, and writes its contact to the output."""
+def serve(parent: int) -> None:
+    """Reads a pickled ``Calibration`` from the input, and writes its contact to the output, while the parent lives."""
+    threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
     with os.fdopen(os.dup(sys.stdout.fileno()), "w") as result:
         os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # what libraries print is no result
         task: Calibration = pickle.load(sys.stdin.buffer)
@@ -174,5 +178,12 @@ def _live(live: Live, heads: Array) -> Array:
 
 
 def _swing(tips: Array) -> float:
-    """How far tips are from where they begin, shape (frames, count, 3): the root of the mean square [m]."""
-    return float(np.sqrt(np.mean(np.sum((tips - tips[0]) ** 2, axis=2))))
+    """How far the median tip is from where it begins, by tips of shape (frames, count, 3): root of the mean square [m]."""
+    return float(np.sqrt(np.mean(np.median(np.linalg.norm(tips - tips[0], axis=2), axis=1) ** 2)))
+
+
+def _end_with(parent: int) -> None:
+    """Ends this process once the one that started it is gone, also where that was killed."""
+    while os.getppid() == parent:
+        time.sleep(LOOKS)
+    os._exit(1)

@@ -15,7 +15,12 @@ from ringlet.live.calibration import Calibration
 REST = 3.0  # time without a change after which it begins [s]
 KEPT = 32  # results, of the grooms and materials seen last
 NICE = 10  # lower priority of the process
-COMMAND = [sys.executable, "-P", "-c", "from ringlet.live.calibration import serve; serve()"]
+COMMAND = [
+    sys.executable,
+    "-P",
+    "-c",
+    "import sys; from ringlet.live.calibration import serve; serve(int(sys.argv[1]))",
+]
 
 
 class Calibrator:
@@ -65,7 +70,9 @@ def _begin(calibration: Calibration) -> subprocess.Popen[str]:
         pickle.dump(calibration, task)
         task.seek(0)
         environment = {**os.environ, "OMP_NUM_THREADS": "1"}
-        process = subprocess.Popen(COMMAND, stdin=task, stdout=subprocess.PIPE, text=True, env=environment)
+        process = subprocess.Popen(
+            [*COMMAND, str(os.getpid())], stdin=task, stdout=subprocess.PIPE, text=True, env=environment
+        )
     if hasattr(os, "setpriority"):
         os.setpriority(os.PRIO_PROCESS, process.pid, os.getpriority(os.PRIO_PROCESS, process.pid) + NICE)
     return process
