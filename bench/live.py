@@ -24,7 +24,7 @@ from ringlet import (
     trunk_motion,
 )
 
-EXAMPLE = Path(__file__).parents[1] / "examples" / "child"
+EXAMPLES = Path(__file__).parents[1] / "examples"
 DEGREE = 5  # of the centre line that radii of coils are measured from
 EVERY = 4  # frames of which one volume is measured
 NEIGHBOURS = 6
@@ -33,21 +33,21 @@ Array = NDArray[np.float64]
 
 
 def run(
-    recipe: str = "curls", locks: int = 0, frames: int = 48, newton: int = 12, seconds: float = 10.0
+    recipe: str = "child/curls", locks: int = 0, frames: int = 48, newton: int = 12, seconds: float = 10.0
 ) -> dict[str, Any]:
     """Moves the locks of an example through the nod, live and in a shot with contact, from the same first frame.
 
-    recipe:  of ``examples/child``
+    recipe:  of ``examples``, its path without ``.recipe.toml``
     locks:   their number; 0 for that of the recipe
     frames:  of the clip
     newton:  iterations of the shot; 0 for no shot, to time the steps alone
     seconds: of live hair on a still head
     """
     clock = Clock()
-    made = read_recipe(EXAMPLE / f"{recipe}.recipe.toml")
+    made = read_recipe(EXAMPLES / f"{recipe}.recipe.toml")
     if locks:
         made = made.model_copy(update={"locks": made.locks.model_copy(update={"count": locks})})
-    groom, shot = build_groom(made), read_shot(EXAMPLE / "nod.shot.toml")
+    groom, shot = build_groom(made), read_shot(EXAMPLES / "child" / "nod.shot.toml")
     heads, trunks = (motion(groom, (1, frames)) for motion in (head_motion, trunk_motion))
     measured: dict[str, Any] = {}
     if newton:

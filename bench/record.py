@@ -29,7 +29,7 @@ GROOM = (*CORE, *(f"python/ringlet/{name}" for name in ("data", "deform", "groom
 SIM = (*GROOM, "python/ringlet/sim")
 REST = (*SIM, "python/ringlet/rest")
 LIVE = (*REST, "python/ringlet/live")
-UNTIMED = {"iterations", "liveliness", "nest", "noise", "serial", "tips", "warp"}  # what counts is no time: no turns
+UNTIMED = {"iterations", "live", "liveliness", "nest", "noise", "serial", "tips", "warp"}  # what counts is no time: no turns
 MEASURED = {  # folders, where not the core alone
     "groom": GROOM,
     "slider": GROOM,
@@ -54,7 +54,8 @@ def record(arguments: list[str], reference: str | None = None) -> Path:
     """
     first, *rest = arguments
     name, program = Path(first).stem, first.endswith(".py")
-    path = RESULTS / ("_".join([name, *(word.removeprefix("--").replace(" ", "-") for word in rest)]) + ".json")
+    words = (word.removeprefix("--").replace(" ", "-").replace("/", "_") for word in rest)
+    path = RESULTS / ("_".join([name, *words]) + ".json")
     kept = json.loads(path.read_text()) if path.exists() else {}
     commit, sources = version(name)
     ringlet = Path(sys.executable).with_name("ringlet")
