@@ -28,6 +28,8 @@ EXAMPLES = Path(__file__).parents[1] / "examples"
 DEGREE = 5  # of the centre line that radii of coils are measured from
 EVERY = 4  # frames of which one volume is measured
 NEIGHBOURS = 6
+CELL = 0.003  # of the picture that hair covers [m]
+STILL = 2e-4  # motion in a frame below which a tip stands still [m]
 
 Array = NDArray[np.float64]
 
@@ -113,7 +115,10 @@ def compare(groom: Groom, expected: Array, found: Array) -> dict[str, float]:
         "tips_off_mm": 1e3 * float(np.linalg.norm(d - e, axis=2).mean()),
         "tips_move_mm": 1e3 * float(np.linalg.norm(e, axis=2).mean()),
         "volume": float(np.mean([volume(found[k]) / volume(expected[k]) for k in frames])),
+        "covered": float(np.mean([covered(found[k]) / covered(expected[k]) for k in frames])),
         "radius": float(np.mean([radius(found[k], offsets) / radius(expected[k], offsets) for k in frames])),
+        "still_frames": longest_rest(d),
+        "still_frames_of_shot": longest_rest(e),
         "stretch_percent": 100.0 * (longest(found, offsets) - 1.0),
         "stretch_of_shot_percent": 100.0 * (longest(expected, offsets) - 1.0),
     }
@@ -148,6 +153,20 @@ def own_motion(roots: Array, motion: Array) -> float:
 def volume(points: Array) -> float:
     """Of the convex hull of every fifth point [m³]."""
     return float(ConvexHull(points[::5]).volume)
+
+
+def covered(points: Array) -> int:
+    """Cells of a picture from the front that have points in them."""
+    return len(np.unique(np.floor(points[:, :2] / CELL).astype(np.int64), axis=0))
+
+
+def longest_rest(motion: Array) -> int:
+    """Most frames in a row in which a tip stands still, by motion of tips of shape (frames, count, 3)."""
+    longest = rests = np.zeros(motion.shape[1], np.int64)
+    for speed in np.linalg.norm(np.diff(motion, axis=0), axis=2):
+        rests = np.where(speed < STILL, rests + 1, 0)
+        longest = np.maximum(longest, rests)
+    return int(longest.max())
 
 
 def radius(points: Array, offsets: NDArray[np.integer]) -> float:

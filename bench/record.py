@@ -29,7 +29,7 @@ GROOM = (*CORE, *(f"python/ringlet/{name}" for name in ("data", "deform", "groom
 SIM = (*GROOM, "python/ringlet/sim")
 REST = (*SIM, "python/ringlet/rest")
 LIVE = (*REST, "python/ringlet/live")
-UNTIMED = {"iterations", "live", "liveliness", "nest", "noise", "serial", "tips", "warp"}  # what counts is no time: no turns
+UNTIMED = {"iterations", "live", "liveliness", "nest", "noise", "serial", "tips", "warp"}  # not by turns: no times
 MEASURED = {  # folders, where not the core alone
     "groom": GROOM,
     "slider": GROOM,
