@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from commands import edit
 from pxr import Usd
+from ringlet.data.surfaces import color_of
 from ringlet.io import problems, read_clip, read_curves, read_groom, read_mesh, write_groom
 from usd_scenes import CUBE, CUBE_FACES, make_groom
 
@@ -41,6 +42,25 @@ def test_an_obj_is_a_scalp_with_its_groups_as_regions(tmp_path):
     upright = read_mesh(path, space=StageSpace(0.01, "Z"))
     np.testing.assert_allclose(upright.points, 0.1 * CUBE[:, [0, 2, 1]] * [1, 1, -1])
     np.testing.assert_allclose(read_clip(path, space=CM).at(3), mesh.points)
+
+
+def test_materials_of_an_obj_are_regions_and_colours(tmp_path):
+    path = write_cube(tmp_path / "bust.obj")
+    bare = read_mesh(path, space=CM)
+    assert bare.colors is None
+    assert bare.color == color_of("skin")
+    text = path.read_text().replace("g scalp\n", "usemtl M_Iris\ng scalp\n")
+    path.write_text("mtllib cube.mtl missing.mtl\nmtllib cube.mtl\n" + text.replace("g skin", "usemtl M_Face\ng skin"))
+    guessed = read_mesh(path, space=CM)
+    np.testing.assert_array_equal(guessed.regions["M_Iris"], [10, 11])
+    corners = guessed.triangles[10:].ravel()
+    np.testing.assert_allclose(guessed.colors[corners], np.tile(color_of("iris"), (6, 1)))
+    others = np.setdiff1d(np.arange(8), corners)
+    np.testing.assert_allclose(guessed.colors[others], np.tile(color_of("skin"), (len(others), 1)))
+    (tmp_path / "cube.mtl").write_text("newmtl M_Face\nKd 0.1 0.2 0.3\nnewmtl M_Iris\nKd 1 x 0\nKd\n")
+    given = read_mesh(path, space=CM)
+    np.testing.assert_allclose(given.colors[others], np.tile([0.1, 0.2, 0.3], (len(others), 1)))
+    np.testing.assert_allclose(given.colors[corners], guessed.colors[corners])
 
 
 def test_a_groom_on_an_obj_stores_the_head(tmp_path):

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet.data.frames import frame_range
+from ringlet.data.surfaces import UNCOLORED, Color, color_of
 
 if TYPE_CHECKING:
     from ringlet.data.texture import Texture
@@ -26,7 +27,7 @@ class Mesh:
     faces:     the source polygon of each triangle, shape (m,), int32 (Houdini's ``skinprim``)
     places:    parametric coordinates of the corners in their source polygons, shape (m, 3, 2) (``skinprimuv``)
     regions:   named sets of triangles, e.g. ``scalp``; index arrays, int32
-    color:     display colour (linear r, g, b), the mean of it where it varies
+    color:     display colour (linear r, g, b), the mean of it where it varies; by default that of what it is called
     colors:    display colour of each vertex (linear r, g, b), shape (n, 3), or None where it does not vary
     maps:      painted values by name, at the corners of each triangle, shape (m, 3), float64
     vectors:   painted directions by name, at the corners of each triangle, shape (m, 3, 3), float64, as the points are
@@ -41,12 +42,16 @@ class Mesh:
     faces: NDArray[np.int32] | None = None
     places: NDArray[np.float64] | None = None
     regions: dict[str, NDArray[np.int32]] = field(default_factory=dict)
-    color: tuple[float, float, float] = (0.5, 0.5, 0.5)
+    color: Color = UNCOLORED
     colors: NDArray[np.float64] | None = None
     maps: dict[str, NDArray[np.float64]] = field(default_factory=dict)
     vectors: dict[str, NDArray[np.float64]] = field(default_factory=dict)
     textures: dict[str, Texture] = field(default_factory=dict)
     gradients: dict[str, Callable[[NDArray[np.float64]], NDArray[np.float64]]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if self.color is UNCOLORED:
+            self.color = color_of(self.name)
 
     def __repr__(self) -> str:
         return f"Mesh({self.name!r}, {len(self.points):,} points, {len(self.triangles):,} triangles)"

@@ -13,9 +13,9 @@ from ringlet.data.attributes import fits
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.hair_scene import CurveSet, HairScene
-from ringlet.data.mesh import Mesh
 from ringlet.data.resampling import Resampling
 from ringlet.data.stage import StageSpace
+from ringlet.data.surfaces import color_of
 from ringlet.io import unreal
 from ringlet.io.alembic import SCHEMA, holds, open_alembic, write_alembic
 from ringlet.io.hair import read_hair, write_hair
@@ -169,7 +169,7 @@ def _unheld(scene: HairScene, kind: Format) -> list[str]:
         lost.append(f"{kind.name} holds Unreal's attributes for whole curves: without {', '.join(names)} of points")
     lost += _materials(scene, kind)
     meshes = [mesh for mesh, _ in scene.bodies]
-    if any(mesh.colors is not None or mesh.color != Mesh.color for mesh in meshes):
+    if any(mesh.colors is not None or mesh.color != color_of(mesh.name) for mesh in meshes):
         lost.append(f"{kind.name} is written without the colours of surfaces")
     if regions := sorted({name for mesh in meshes for name in (*mesh.regions, *mesh.maps, *mesh.vectors)}):
         lost.append(f"{kind.name} is written without regions and maps of surfaces: without {', '.join(regions)}")

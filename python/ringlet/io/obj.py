@@ -5,6 +5,7 @@ Format: http://paulbourke.net/dataformats/obj/. A file stores neither its unit n
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -19,6 +20,7 @@ from ringlet.data.mesh import Mesh
 from ringlet.data.reads import record
 from ringlet.data.regular import read_bytes
 from ringlet.data.stage import StageSpace
+from ringlet.data.surfaces import UNCOLORED, Color, color_of
 from ringlet.io.polygons import check_polygons, polygon_places, triangulate
 from ringlet.io.space import check_points, from_metres, to_metres
 
@@ -36,11 +38,16 @@ class _Content:
     faces: list[list[int]] = field(default_factory=list)
     face_uv: list[list[int]] = field(default_factory=list)
     groups: dict[str, list[int]] = field(default_factory=dict)
+    materials: dict[str, list[int]] = field(default_factory=dict)
+    libraries: list[str] = field(default_factory=list)
     lines: list[list[int]] = field(default_factory=list)
 
 
 def read_obj_mesh(path: Path, space: StageSpace) -> Mesh:
-    """Reads all faces as one mesh; groups (``g``) and objects (``o``) become regions."""
+    """Reads all faces as one mesh; groups (``g``), objects (``o``) and materials (``usemtl``) become regions.
+
+    Colours are those of the materials, ``Kd`` in their library or else what their names say.
+    """
     content = _parse(path)
     points = np.array(content.points, np.float64).reshape(-1, 3)
     check_points(points, str(path))
@@ -57,14 +64,17 @@ def read_obj_mesh(path: Path, space: StageSpace) -> Mesh:
     )
     if len(uv_indices) == len(indices) and (bad := np.flatnonzero((uv_indices < 0) | (uv_indices >= len(uv)))).size:
         raise UserError(f"{path}: a face uses vt {uv_indices[bad[0]] + 1}; must be from 1 to {len(uv)}")
+    triangles = indices[corners].astype(np.int32)
+    materials = {name: _triangles_of(np.array(chosen), faces) for name, chosen in content.materials.items()}
     return Mesh(
         name=path.name,
         points=to_metres(points, space),
-        triangles=indices[corners].astype(np.int32),
+        triangles=triangles,
         uv=uv[uv_indices][corners] if len(uv_indices) == len(indices) else None,
         faces=faces.astype(np.int32),
         places=polygon_places(counts)[corners],
-        regions={name: _triangles_of(np.unique(chosen), faces) for name, chosen in content.groups.items()},
+        regions=materials | {name: _triangles_of(np.unique(chosen), faces) for name, chosen in content.groups.items()},
+        colors=_vertex_colors(materials, _library_colors(path, content.libraries), triangles, len(points)),
     )
 
 
@@ -77,6 +87,37 @@ def _triangles_of(chosen: NDArray[np.integer], faces: NDArray[np.integer]) -> ND
     begin, end = np.searchsorted(faces, chosen), np.searchsorted(faces, chosen, side="right")
     before = np.cumsum(end - begin) - (end - begin)
     return (np.repeat(begin - before, end - begin) + np.arange((end - begin).sum())).astype(np.int32)
+
+
+def _vertex_colors(
+    materials: dict[str, NDArray[np.int32]], library: dict[str, Color], triangles: NDArray[np.int32], count: int
+) -> NDArray[np.float64] | None:
+    """Colours of vertices, shape (count, 3), by the materials of their triangles; None where these say nothing."""
+    colors = {name: library.get(name, color_of(name)) for name in materials}
+    if all(color is UNCOLORED for color in colors.values()):
+        return None
+    of_vertices = np.tile(UNCOLORED, (count, 1))
+    for name, chosen in materials.items():
+        of_vertices[triangles[chosen]] = colors[name]
+    return of_vertices
+
+
+def _library_colors(path: Path, libraries: list[str]) -> dict[str, Color]:
+    """Diffuse colours (``Kd``) of materials by name, of the libraries in the folder of a file that are there."""
+    colors, name = dict[str, Color](), ""
+    for library in (path.parent / Path(one).name for one in libraries):
+        if not library.is_file():
+            continue
+        record(library)
+        for line in read_bytes(library, most=MOST_BYTES).decode("utf-8-sig", errors="replace").splitlines():
+            key, *words = line.split() or [""]
+            if key == "newmtl":
+                name = " ".join(words)
+            elif key == "Kd" and len(words) == 3:
+                with suppress(ValueError):
+                    red, green, blue = map(float, words)
+                    colors[name] = red, green, blue
+    return colors
 
 
 def read_obj_curves(path: Path, space: StageSpace) -> Curves:
@@ -100,7 +141,7 @@ def write_obj_curves(curves: Curves, path: Path, space: StageSpace) -> None:
 
 
 def _parse(path: Path) -> _Content:
-    content, named = _Content(), []
+    content, named, material = _Content(), [], ""
     text = read_bytes(path, most=MOST_BYTES).decode("utf-8-sig", errors="replace")
     record(path)
     for number, line in enumerate(text.replace("\\\n", " ").splitlines(), 1):
@@ -118,8 +159,14 @@ def _parse(path: Path) -> _Content:
                 content.face_uv.append([_index(part[1], len(content.uv)) for part in parts if part[1:] and part[1]])
                 for name in named:
                     content.groups.setdefault(name, []).append(len(content.faces) - 1)
+                if material:
+                    content.materials.setdefault(material, []).append(len(content.faces) - 1)
             elif key == "l" and words:
                 content.lines.append([_index(word.split("/")[0], len(content.points)) for word in words])
+            elif key == "usemtl":
+                material = " ".join(words)
+            elif key == "mtllib":
+                content.libraries.append(" ".join(words))
             elif key in ("g", "o"):
                 named = list(dict.fromkeys(words))
                 if len(named) > MAX_GROUPS:

@@ -142,12 +142,12 @@ def _sample(groom: Groom) -> Groom:
     """Locks that are neighbours, all of one side where there are many."""
     cores = Cores.of(groom)
     middles = Rods.of(cores.groom.locks).points.reshape(-1, VERTICES, 3)[:, VERTICES // 2]
-    order = np.argsort(np.linalg.norm(middles - middles[_beside(middles)], axis=1))[:SAMPLE]
+    order = np.argsort(np.linalg.norm(middles - middles[_amid(middles)], axis=1))[:SAMPLE]
     rows = np.flatnonzero(np.isin(cores.simulated, order))
     return replace(groom, locks=groom.locks.take(rows))
 
 
-def _beside(middles: Array) -> int:
+def _amid(middles: Array) -> int:
     """The rod in the middle of those on one side of the head, away from the hairline."""
     on_side = middles[middles[:, 0] >= np.median(middles[:, 0])]
     return int(np.linalg.norm(middles - on_side.mean(axis=0), axis=1).argmin())
@@ -178,7 +178,7 @@ def _live(live: Live, heads: Array) -> Array:
 
 
 def _swing(tips: Array) -> float:
-    """How far the median tip is from where it begins, by tips of shape (frames, count, 3): root of the mean square [m]."""
+    """How far the median tip is from where it begins, of tips (frames, count, 3): the root of the mean square [m]."""
     return float(np.sqrt(np.mean(np.median(np.linalg.norm(tips - tips[0], axis=2), axis=1) ** 2)))
 
 

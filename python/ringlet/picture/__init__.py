@@ -2,7 +2,7 @@
 
 from ringlet.data.pigment import HAIR_COLORS
 from ringlet.picture.beads import beads
-from ringlet.picture.bodies import PosedBody, material_of
+from ringlet.picture.bodies import PosedBody
 from ringlet.picture.camera import VIEWS
 from ringlet.picture.compare import compare
 from ringlet.picture.motion import Pose
@@ -23,7 +23,6 @@ __all__ = [
     "compare",
     "film",
     "growing",
-    "material_of",
     "sheet",
     "still",
     "still_standpoint",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,6 +10,7 @@ from numpy.typing import NDArray
 
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
+from ringlet.data.surfaces import material_of
 
 
 @dataclass
@@ -40,23 +40,9 @@ class PosedBody:
 # Name of the vertex colours in Mitsuba.
 COLORS = "vertex_color"
 
-# The material is guessed from the last component of the mesh's name; the first matching pattern decides.
-_MADE_OF = (
-    ("matte", r"brow|lash|mouth|nostril"),
-    ("eye", r"eye|white|iris|pupil|cornea|sclera|teeth"),
-    ("cloth", r"shirt|cloth|tee|dress|jacket|sweater|hood|scarf|collar"),
-    ("skin", r"skin|head|face|body|scalp|neck|ear|bust|child"),
-)
-
-
-def material_of(mesh: Mesh) -> str:
-    """Material of a mesh, guessed from its name: skin, eye, cloth or matte."""
-    name = re.split(r"[/\s]", mesh.name.lower())[-1]
-    return next((kind for kind, pattern in _MADE_OF if re.search(pattern, name)), "matte")
-
 
 def material(mesh: Mesh, opacity: float = 1.0) -> dict[str, Any]:
-    """Mitsuba material of a mesh: kind guessed from its name, base colour from its display colour."""
+    """Mitsuba material of a mesh, by its name and its display colour."""
     color: dict[str, Any] = {"type": "rgb", "value": [float(np.clip(c, 0.0, 1.0)) for c in mesh.color]}
     if mesh.colors is not None:
         color = {"type": "mesh_attribute", "name": COLORS}
@@ -67,5 +53,6 @@ def material(mesh: Mesh, opacity: float = 1.0) -> dict[str, Any]:
         "cloth": {"roughness": 0.9, "specular": 0.15, "sheen": 0.5, "sheen_tint": 0.5},
         "matte": {"roughness": 0.8, "specular": 0.2},
     }
-    bsdf = {"type": "twosided", "bsdf": {"type": "principled", "base_color": color, **parameters[material_of(mesh)]}}
+    made_of = parameters[material_of(mesh.name)]
+    bsdf = {"type": "twosided", "bsdf": {"type": "principled", "base_color": color, **made_of}}
     return bsdf if opacity == 1.0 else {"type": "mask", "opacity": opacity, "bsdf": bsdf}

@@ -16,8 +16,8 @@ from ringlet.data.files import replacing
 from ringlet.data.mesh import Mesh
 from ringlet.data.rigid import rotation_matrix, rotation_vector
 from ringlet.data.settings import FORMAT
+from ringlet.data.surfaces import material_of
 from ringlet.data.toml import toml_key
-from ringlet.picture import material_of
 from ringlet.viewer.files.document import set_value
 from ringlet.viewer.files.open_files import Files
 from ringlet.viewer.play.head import smooth_step
@@ -82,7 +82,7 @@ class HeadClip:
     def follow(self, mesh: Mesh, rest: Array, frame: int) -> Array:
         """Points of a mesh of the head's file in a frame: the neck bends, and cloth goes with the body."""
         turn, shift = rotation_matrix(self.turns[frame - self.first]), self.shifts[frame - self.first]
-        share = np.zeros((len(rest), 1)) if material_of(mesh) == "cloth" else _share_of_head(rest - self.pivot)
+        share = np.zeros((len(rest), 1)) if material_of(mesh.name) == "cloth" else _share_of_head(rest - self.pivot)
         return rest + shift + share * ((rest - self.pivot) @ turn.T - (rest - self.pivot))
 
 

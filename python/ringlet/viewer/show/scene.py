@@ -18,8 +18,8 @@ from ringlet.data.accessory import Accessory
 from ringlet.data.errors import UserError
 from ringlet.data.groom import shows
 from ringlet.data.mesh import Clip, Mesh
+from ringlet.data.surfaces import material_of
 from ringlet.groom import Groom, lay_hairs
-from ringlet.picture import material_of
 from ringlet.shot import Shot
 from ringlet.viewer import protocol
 from ringlet.viewer.show.display_groom import DisplayGroom
@@ -46,7 +46,7 @@ class VisibleMesh:
         """Message with the mesh in its rest pose, relative to an origin [m]."""
         mesh = self.mesh
         colors = mesh.colors if mesh.colors is not None else np.empty((0, 3))
-        material = "cloth" if self.cloth else material_of(mesh)
+        material = "cloth" if self.cloth else material_of(mesh.name)
         return pack(
             protocol.Body(index=index, name=mesh.name.split("/")[-1], made_of=material, color=mesh.color),
             points=mesh.points - origin,
