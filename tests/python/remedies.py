@@ -460,7 +460,7 @@ RECIPES = [
     Advice("which only locks of sections and edges have; add [locks.sections] or [scalp.edge]",
         made("[[shape]]\nop = 'frizz'\nmask = { where = 'section > 0' }"),
         made(SECTIONS + "[[shape]]\nop = 'frizz'\nmask = { where = 'section > 0' }")),
-    Advice("no section has strands; set locks.sections.strands, such as 3",
+    Advice("no section has strands; set locks.sections.strands, such as 3, and see its mask",
         made("[locks]\ncount = 'none'\n[locks.sections]\nsize = 6\n[[shape]]\nop = 'braid'\nwidth = 1\npitch = 3"),
         made(recipes.STRANDS + "[[shape]]\nop = 'braid'\nwidth = 2\npitch = 5")),
     Advice("needs an area, but scalp.edge grows hair on lines; take one of the two away",

@@ -78,7 +78,9 @@ class Sectioned(Shape):
     def check_strands(self, curves: Curves, context: Context) -> None:
         """Raises UserError where no section has strands."""
         if STRAND not in curves.curve or not (curves.curve[STRAND] >= 0).any():
-            raise UserError(f"{context.purpose}: no section has strands; set locks.sections.strands, such as 3")
+            raise UserError(
+                f"{context.purpose}: no section has strands; set locks.sections.strands, such as 3, and see its mask"
+            )
 
     def leaders(self, curves: Curves, acts: NDArray[np.bool_]) -> tuple[Curves, Sequence[NDArray[np.integer]]]:
         """A strand of each section that an operator acts on, named by the section, and the rows of all its strands.
