@@ -32,7 +32,10 @@ def build_extension(folder: Path) -> Path:
 
 
 def run(script: str, found: Path, *arguments: object, seconds: float = 600, **environment: str) -> Any:
-    """Runs a script of tests/python in Blender's Python; returns the JSON that it writes to the file ``found``."""
+    """Runs a script of tests/python in Blender's Python; returns the JSON that it writes to the file ``found``.
+
+    Blender prints a line for each primvar that it cannot read, in each frame: there must be none of ours.
+    """
     # PYTHON… variables of the test run must not reach the Python of Blender.
     clean = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
     command = [str(word) for word in (PYTHON, Path(__file__).with_name(script), found, *arguments)]
@@ -40,4 +43,6 @@ def run(script: str, found: Path, *arguments: object, seconds: float = 600, **en
         command, capture_output=True, text=True, timeout=seconds, env={**clean, **environment}, check=False
     )
     assert done.returncode == 0, done.stderr[-2000:]
+    unread = [line for line in (done.stdout + done.stderr).splitlines() if "Primvar 'ringlet:" in line]
+    assert not unread, unread[:4]
     return json.loads(found.read_text())

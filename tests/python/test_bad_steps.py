@@ -176,7 +176,7 @@ def test_roots_beside_their_triangle_are_refused_with_their_lock(project, bad):
     assert sim(project).exit_code == 0
     path = project / "cache.groom.usdc"
     layer = Sdf.Layer.FindOrOpen(str(path))
-    attribute = layer.GetAttributeAtPath("/groom/locks.primvars:ringlet:root_barycentric")
+    attribute = layer.GetAttributeAtPath("/groom/locks.ringlet:root_barycentric")
     weights = np.array(attribute.default)
     weights[2] = [bad, 1.0 - bad, 0.0]
     attribute.default = Vt.Vec3dArray.FromNumpy(weights)

@@ -58,8 +58,8 @@ def test_drawn_guides_without_roots_move_with_the_locks_of_a_rebound_groom(copy)
     before = ringlet.read_groom(made(copy))
     stage = Usd.Stage.Open(str(copy / "groom.usdc"))
     guides = stage.GetPrimAtPath("/groom/guides")
-    for name in ("root_triangle", "root_barycentric"):
-        assert guides.RemoveProperty(f"primvars:ringlet:{name}")
+    for name in ("primvars:ringlet:root_triangle", "ringlet:root_barycentric"):
+        assert guides.RemoveProperty(name)
     stage.Save()
     change_points(copy / "head.usda", "/ball/skin", lambda p: 2.0 * p @ TURN.T + [10.0, 0, 0])
     assert sim(copy, "--rebind").exit_code == 0

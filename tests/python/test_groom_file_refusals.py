@@ -26,7 +26,7 @@ def remove(name: str):
     def spoil(folder: Path) -> None:
         stage = Usd.Stage.Open(str(folder / "groom.usdc"))
         for prim in ("/groom/locks", "/groom/guides"):
-            assert stage.GetPrimAtPath(prim).RemoveProperty(f"primvars:ringlet:{name}")
+            assert stage.GetPrimAtPath(prim).RemoveProperty(name)
         stage.Save()
 
     return spoil
@@ -56,9 +56,9 @@ def groomed(copy):
     [
         (coincide, "sim", ["points 4 and 5 of curve", "coincide at (", "m; move them apart"]),
         (coincide, "loft", ["points 4 and 5 of curve", "coincide"]),
-        (remove("id"), "sim", ["/groom/guides", "ringlet:id"]),
-        (remove("root_triangle"), "hair", ["not bound", "make the groom again"]),
-        (remove("root_barycentric"), "hair", ["not bound", "make the groom again"]),
+        (remove("ringlet:id"), "sim", ["/groom/guides", "ringlet:id"]),
+        (remove("primvars:ringlet:root_triangle"), "hair", ["not bound", "make the groom again"]),
+        (remove("ringlet:root_barycentric"), "hair", ["not bound", "make the groom again"]),
         (empty_region, "hair", ["region 'scalp'", "no faces"]),
         (flatten, "hair", ["head.usda", "roots are off the scalp", "make the groom again"]),
     ],

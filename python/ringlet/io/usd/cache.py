@@ -22,7 +22,7 @@ from ringlet.data.stage import StageSpace
 from ringlet.io.space import to_metres
 from ringlet.io.usd.clips import clip_at
 from ringlet.io.usd.cloths import ClothPrims, cloth_metadata, read_cloth, set_cloth
-from ringlet.io.usd.curves import OWN, own_curves
+from ringlet.io.usd.curves import OWN, own_curves, own_ids
 from ringlet.io.usd.damage import check_bytes
 from ringlet.io.usd.groom import LOCKS, VERSION, check_version, groom_prim, read_accessories
 from ringlet.io.usd.mesh import mesh_at
@@ -89,7 +89,7 @@ class CacheFile:
                 f"{source.path}: holds no simulated frames; make a cache with: ringlet sim SHOT.toml -o cache.usdc"
             )
         self.size = len(self._points.Get(Usd.TimeCode.Default()))
-        self.ids = np.array(UsdGeom.PrimvarsAPI(self._points.GetPrim()).GetPrimvar(f"{OWN}id").Get(), np.int64)
+        self.ids = own_ids(self._points.GetPrim())
         metadata = [layer.customLayerData.get("ringlet") or {} for layer in source.stage.GetLayerStack()]
         for data in metadata:
             check_version(source, data.get("version", VERSION))
@@ -277,7 +277,7 @@ class CacheWriter(StreamWriter):
             return
         prim = self._curves.GetPrim()
         if self._lagging is None:
-            ids = UsdGeom.PrimvarsAPI(prim).GetPrimvar(f"{OWN}id").Get()
+            ids = own_ids(prim)
             self._place_of = {int(lock): k for k, lock in enumerate(ids)}
             self._lagging = UsdGeom.PrimvarsAPI(prim).CreatePrimvar(LAG, Types.FloatArray, "uniform")
             if self._before is not None:

@@ -1,7 +1,8 @@
 """Reads USD curves of every type, basis and wrap; writes Ringlet's own curves and reads them back.
 
 Ringlet writes pinned Catmull-Rom curves, whose vertices are the points of the polyline. Attributes of Ringlet are
-primvars ``ringlet:…`` in SI units, Y-up. Attributes of drawn guides keep their names.
+primvars ``ringlet:…`` in SI units, Y-up. Those of 64 bits are attributes ``ringlet:…``, a value a curve: Blender warns
+of such primvars in each frame. Attributes of drawn guides keep their names.
 """
 
 from __future__ import annotations
@@ -36,6 +37,7 @@ from ringlet.io.usd.values import (
     read_time,
     rows,
     set_primvar,
+    to_usd,
     transformed,
     triples,
 )
@@ -48,6 +50,7 @@ COMMON |= {"groom_id", "groom_group_id", "groom_guide", "groom_root_uv", "groom_
 COMMON |= {"displayColor", "displayOpacity"}
 INNER = {"root_triangle", "root_barycentric", "lock", "guide_id", "pin", "tied", GROOM}
 INNER |= {"groomed", "stiffened", "off", "moving"}
+WIDE = ("int64", "float64")  # types of Ringlet's own attributes that are no primvars
 CONSTANT = {DYE, *FIBER}  # attributes of curves that are written once where all curves have the same
 MOST_WIDTH = 1.0  # largest diameter of a curve that is written [m]
 SCHEMA = {"widths", "normals"}  # primvars that take precedence over the attribute of the same name
@@ -88,6 +91,8 @@ def curves_at(source: Source, prim: Usd.Prim, time: Usd.TimeCode, unread: list[s
         if primvar.GetTypeName().role == Sdf.ValueRoleNames.Point:
             values = to_metres(transformed(np.asarray(values, np.float64), prim, time), source.space)
         _add(curves, sampling, name, values, primvar.GetInterpolation(), f"{where}: {primvar.GetName()}")
+    for name, values in wide_attributes(prim).items():
+        _add(curves, sampling, name, values, UsdGeom.Tokens.uniform, f"{where}: {OWN}{name}")
     if unread is not None:
         api, held = UsdGeom.PrimvarsAPI(prim), {*curves.curve, *curves.point, *SCHEMA}
         names = [primvar.GetPrimvarName().removeprefix(OWN) for primvar in api.GetPrimvarsWithAuthoredValues()]
@@ -126,11 +131,10 @@ def own_curves(source: Source, prim: Usd.Prim, time: Usd.TimeCode | None = None,
     local = triples(value, f"{where}: its points", dtype)
     points = to_metres(placed(local, prim, time), source.space)
     counts = _counts(prim, time, len(points), where)
-    primvar = UsdGeom.PrimvarsAPI(prim).GetPrimvar(f"{OWN}id")
-    ids = primvar.Get() if primvar else None
-    if ids is None or len(ids) != len(counts):
+    ids = own_ids(prim)
+    if len(ids) != len(counts):
         raise UserError(f"{where}: has no ringlet:id for each of its {len(counts)} curves; write the file again")
-    curves = Curves(points, offsets_from_counts(counts), np.array(ids, np.int64))
+    curves = Curves(points, offsets_from_counts(counts), ids)
     add_own_attributes(curves, prim, where)
     schema = UsdGeom.BasisCurves(prim)
     if schema.GetWidthsInterpolation() == UsdGeom.Tokens.vertex and "width" not in curves.curve:
@@ -139,6 +143,19 @@ def own_curves(source: Source, prim: Usd.Prim, time: Usd.TimeCode | None = None,
             raise UserError(f"{where}: has {len(widths)} widths for {len(points)} points; write the file again")
         curves.point["width"] = widths * np.float32(source.space.meters_per_unit)
     return curves
+
+
+def own_ids(prim: Usd.Prim) -> NDArray[np.int64]:
+    """Ids of Ringlet's curves on a prim; empty where it has none. Files of earlier versions have them as a primvar."""
+    attribute = prim.GetAttribute(f"{OWN}id") or prim.GetAttribute(f"primvars:{OWN}id")
+    return np.array((attribute.Get() if attribute else None) or [], np.int64)
+
+
+def wide_attributes(prim: Usd.Prim) -> dict[str, NDArray]:
+    """Ringlet's own attributes of curves that are no primvars, by name."""
+    found = [one for one in prim.GetAuthoredPropertiesInNamespace(OWN.rstrip(":")) if isinstance(one, Usd.Attribute)]
+    values = {one.GetName().removeprefix(OWN): from_usd(one.Get()) for one in found if one.GetTypeName().isArray}
+    return {name: value for name, value in values.items() if value.dtype.name in WIDE}
 
 
 def add_own_attributes(curves: Curves, prim: Usd.Prim, where: str, skipped: tuple[str, ...] = ()) -> None:
@@ -151,6 +168,9 @@ def add_own_attributes(curves: Curves, prim: Usd.Prim, where: str, skipped: tupl
         if name not in (f"{OWN}id", *COMMON) and not name.startswith(skipped):
             own = original_name(primvar.GetAttr(), name.removeprefix(OWN))
             _add_own(curves, primvar, ATTRIBUTES.get(own, own), where)
+    for name, values in wide_attributes(prim).items():
+        if name != "id":
+            curves.curve[name] = _checked(values, len(curves), f"{where}: {OWN}{name}", UsdGeom.Tokens.uniform)
 
 
 def define_curves(
@@ -176,7 +196,7 @@ def define_curves(
 
     prim = defined.GetPrim()
     prim.AddAppliedSchema(CURVES_API)
-    set_primvar(prim, f"{OWN}id", "uniform", curves.ids)
+    set_attribute(prim, "id", "uniform", curves.ids)
     for interpolation, attributes in (("uniform", curves.curve), ("vertex", curves.point)):
         expected = len(curves) if interpolation == "uniform" else int(curves.offsets[-1])
         for name, values in attributes.items():
@@ -194,14 +214,18 @@ def define_curves(
 
 
 def set_attribute(prim: Usd.Prim, name: str, interpolation: str, values: NDArray) -> None:
-    """Writes an attribute of curves as a primvar whose name USD accepts."""
+    """Writes an attribute of curves as a primvar whose name USD accepts; one of Ringlet of 64 bits as an attribute."""
     valid = f"primvars:{name}"
     if Sdf.Path.IsValidNamespacedIdentifier(valid) and UsdGeom.Primvar.IsValidPrimvarName(valid):
         if name in CONSTANT and len(values) and (values == values[0]).all():
             kind = Types.Color3fArray if name == DYE and values.shape[1:] == (3,) else None
             set_primvar(prim, name, "constant", values[:1], kind)
             return
-        own = name in COMMON | INNER | SCHEMA | {"width"}
+        own = name in COMMON | INNER | SCHEMA | {"id", "width"}
+        if own and interpolation == "uniform" and values.dtype.name in WIDE:
+            kind, value = to_usd(values)
+            prim.CreateAttribute(OWN + name, kind, custom=False).Set(value)
+            return
         set_primvar(prim, OWN + name if own else name, interpolation, values)
         return
     given = UsdGeom.PrimvarsAPI(prim).GetPrimvarsWithAuthoredValues()
@@ -342,12 +366,18 @@ def _add_own(curves: Curves, primvar: UsdGeom.Primvar, name: str, where: str) ->
         if len(values) != 1:
             return  # an array on the whole prim
         values = np.repeat(values, expected, axis=0)
+    what = f"{where}: {primvar.GetPrimvarName()}"
+    (curves.curve if per_curve else curves.point)[name] = _checked(values, expected, what, interpolation)
+
+
+def _checked(values: NDArray, expected: int, what: str, interpolation: str) -> NDArray:
+    """Values of Ringlet's curves; raises UserError where there are not as many as expected."""
     if len(values) != expected:
         raise UserError(
-            f"{where}: {primvar.GetPrimvarName()} has {len(values)} values; must have {expected}, being "
-            f"{interpolation}: one for each curve or point; write it again"
+            f"{what} has {len(values)} values; must have {expected}, being {interpolation}: one for each curve or "
+            "point; write it again"
         )
-    (curves.curve if per_curve else curves.point)[name] = values
+    return values
 
 
 def _assign_ids(curves: Curves) -> None:
