@@ -69,6 +69,8 @@ def test_a_reference_is_shown_moved_and_gives_the_hair_its_color(opened: Any, fo
     page.get_by_role("tab", name="References").click()
     page.locator("input[type=file]").set_input_files(tmp_path / "photo.png")
     review.until("document.querySelector('.reference')?.naturalWidth == 60")
+    list_ = "document.querySelector('[aria-label=\"Reference pictures\"]')"
+    assert review.get(f"{list_}.scrollWidth") == review.get(f"{list_}.clientWidth")  # nothing is cut by the dock
     box = page.locator(".reference").bounding_box()
     page.mouse.move(box["x"] + box["width"] - 20, box["y"] + 20)
     page.mouse.down()

@@ -1,7 +1,7 @@
 // How the groom is looked at: the list of views, light, lens and bookmarks, and what is remembered of them.
 
 import { expect, test, vi } from "vitest";
-import { choose, control, press } from "./controls";
+import { choose, control, find, press } from "./controls";
 import { open, type Page } from "./page";
 
 const eye = (page: Page) => page.app.viewer.camera.position.toArray();
@@ -62,4 +62,14 @@ test("light, lens and bookmarks are kept with the recipe, for other browsers", a
   expect(other.app.viewer.stage.lights.turn).toBe(90);
   control("Camera, light and sheet").click();
   expect(control("Recall bookmark 2").hidden).toBe(false);
+});
+
+test("a render that starts says for how long", async () => {
+  const page = await open();
+  page.app.render.start({ width: 100, height: 80 });
+  expect(find(".render-state").textContent).toContain("Starting, 0 s");
+  vi.advanceTimersByTime(3000);
+  expect(find(".render-state").textContent).toContain("Starting, 3 s");
+  control("Close", find(".render-bar")).click();
+  expect(find(".render").hidden).toBe(true);
 });

@@ -12,7 +12,6 @@ export class Bar {
   private readonly name = h("button", {
     type: "button",
     class: "file-name",
-    title: "Show what has changed since the last save",
   });
   private readonly undo = iconButton("undo", "Undo (Ctrl+Z)", () => this.model.say({ kind: "undo" }));
   private readonly redo = iconButton("redo", "Redo (Ctrl+Shift+Z)", () => this.model.say({ kind: "redo" }));
@@ -71,7 +70,9 @@ export class Bar {
     const open = [documents.recipe, documents.shot].filter((document) => document !== undefined);
     const dirty = open.some((document) => document.dirty);
     const changed = open.filter((document) => document.dirty).map(({ name }) => name);
-    this.name.textContent = dirty ? `${changed.join(", ")} ·` : (documents.recipe?.name ?? welcome?.name ?? "");
+    const shown = dirty ? `${changed.join(", ")} ·` : (documents.recipe?.name ?? welcome?.name ?? "");
+    this.name.textContent = shown;
+    this.name.title = `${shown}: show what has changed since the last save`;
     this.save.title = dirty ? `Save ${changed.join(" and ")} (Ctrl+S)` : "Save (Ctrl+S)";
     this.name.classList.toggle("dirty", dirty);
     document.title = `${dirty ? "• " : ""}${documents.recipe?.name ?? welcome?.name ?? "Ringlet"}`;

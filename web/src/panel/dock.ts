@@ -15,6 +15,8 @@ export interface DockTab {
   count: () => number;
   /** Whether there is anything to show; none: always. */
   offered?: () => boolean;
+  /** Whether it is kept next to the recipe. */
+  kept?: boolean;
   /** Whether what it shows has the name of its author. */
   signed?: boolean;
   /** Called when it is shown. */
@@ -40,7 +42,7 @@ export class Dock {
   private readonly actions = h("div", { class: "dock-actions" });
   readonly element = h("aside", { class: "panel dock", "aria-label": "Settings, chart, snapshots, notes and references" }, this.list, this.actions);
   private chosen: DockTab | null = null; // shown as soon as it is offered
-  private kept: DockTab | null = null; // of the signed ones, the one that was seen last
+  private kept: DockTab | null = null; // the tab of what is kept that was seen last
 
   constructor(renamed: () => void) {
     this.button.setAttribute("aria-pressed", "false");
@@ -62,7 +64,7 @@ export class Dock {
   /** Shows a tab. */
   open(tab: DockTab): void {
     this.chosen = tab;
-    if (tab.signed) this.kept = tab;
+    if (tab.kept) this.kept = tab;
     this.opened();
     this.update();
   }
@@ -92,7 +94,7 @@ export class Dock {
       if (appears) tab.shown?.();
     }
     document.documentElement.dataset["dock"] = current?.title.toLowerCase() ?? "";
-    this.button.setAttribute("aria-pressed", String(Boolean(current?.signed)));
+    this.button.setAttribute("aria-pressed", String(Boolean(current?.kept)));
     if (document.activeElement !== this.author) this.author.value = ownName(); // it may have been given elsewhere
     this.author.hidden = !current?.signed;
     this.actions.hidden = !current?.actions.length;
@@ -109,8 +111,8 @@ export class Dock {
   }
 
   private toggle(): void {
-    const kept = this.kept ?? this.tabs.find(({ tab }) => tab.signed)?.tab;
-    if (this.current?.signed) this.goBack();
+    const kept = this.kept ?? this.tabs.find(({ tab }) => tab.kept)?.tab;
+    if (this.current?.kept) this.goBack();
     else if (kept) this.open(kept);
   }
 

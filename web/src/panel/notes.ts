@@ -51,7 +51,7 @@ export class Notes {
   ) {
     this.marks.classList.add("marks");
     const add = h("button", { type: "button", class: "primary", onclick: () => this.begin() }, "Write a note");
-    this.tab = { title: "Notes", element: this.list, signed: true, actions: [add], count: () => model.notes.filter((one) => !one.resolved).length };
+    this.tab = { title: "Notes", element: this.list, kept: true, signed: true, actions: [add], count: () => model.notes.filter((one) => !one.resolved).length };
     dock.add(this.tab);
     for (const topic of ["notes", "role"] as const) model.on(topic, () => this.update());
     bindKey({ section: "Review", keys: "A", does: "write a note, with arrows and lines over the picture", on: plainKey("a"), run: () => this.begin() });

@@ -34,7 +34,7 @@ export class References {
     file.addEventListener("change", () => void this.addAll([...(file.files ?? [])]));
     const add = h("button", { type: "button", class: "primary", onclick: () => file.click() }, "Add pictures");
     const pick = iconButton("pipette", "Pick the hair's color from a reference picture", () => this.pick(!this.picking), { "aria-pressed": "false" });
-    this.tab = { title: "References", element: this.list, signed: true, actions: [pick, file, add], count: () => model.references.length };
+    this.tab = { title: "References", element: this.list, kept: true, actions: [pick, file, add], count: () => model.references.length };
     dock.add(this.tab);
     for (const topic of ["references", "pictures", "role"] as const) model.on(topic, () => this.update());
     addEventListener("dragover", (event) => event.dataTransfer?.types.includes("Files") && event.preventDefault());

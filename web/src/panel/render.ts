@@ -30,6 +30,9 @@ export class RenderPanel {
   private readonly image = h("img", { alt: "Path-traced picture", draggable: "false" });
   private readonly frame = h("div", { class: "rendered" }, this.image);
   private readonly state = h("output", { class: "render-state", role: "status" });
+  /** Since when the picture is awaited. */
+  private began = 0;
+  private ticking = 0;
   private readonly samples = h("select", { "aria-label": "Samples per pixel" });
   private readonly stopping = h("button", { type: "button", class: "quiet", onclick: () => this.stop() }, "Stop");
   private readonly saving = h("button", { type: "button", class: "quiet", onclick: () => this.save() }, "Save PNG");
@@ -71,6 +74,9 @@ export class RenderPanel {
     this.element.hidden = false;
     this.image.hidden = true;
     this.wipe(1);
+    this.began = performance.now();
+    clearInterval(this.ticking);
+    this.ticking = window.setInterval(() => this.tell(), 1000);
     this.model.say(this.request);
     this.tell();
   }
@@ -95,6 +101,7 @@ export class RenderPanel {
     if (!this.request) return;
     this.stop();
     this.request = this.picture = null;
+    this.tell();
     this.element.hidden = true;
   }
 
@@ -140,10 +147,12 @@ export class RenderPanel {
 
   private tell(): void {
     const { request, picture, model } = this;
+    if (!request || picture) clearInterval(this.ticking);
     if (!request) return;
     const earlier = (model.numbers?.revision ?? 0) !== this.revision ? ", of an earlier groom" : "";
-    const count = picture ? `${picture.samples} of ${request.samples} samples` : "Starting …";
+    const count = picture ? `${picture.samples} of ${request.samples} samples` : `Starting, ${Math.floor((performance.now() - this.began) / 1000)} s`;
     this.state.textContent = `${this.done ? `Rendered, ${picture?.samples} samples` : count}${earlier}`;
+    this.state.setAttribute("aria-live", picture ? "polite" : "off"); // seconds are seen, not said
     this.stopping.hidden = this.done;
     this.saving.hidden = !picture;
     this.line.element.hidden = !picture;

@@ -34,7 +34,7 @@ export class Snapshots {
     private readonly notices: Notices,
   ) {
     const take = h("button", { type: "button", class: "primary", onclick: () => this.take() }, "Take a snapshot");
-    this.tab = { title: "Snapshots", element: this.strip, signed: true, actions: [take], count: () => model.snapshots.length };
+    this.tab = { title: "Snapshots", element: this.strip, kept: true, signed: true, actions: [take], count: () => model.snapshots.length };
     dock.add(this.tab);
     for (const topic of ["snapshots", "pictures", "role"] as const) model.on(topic, () => this.update());
     this.button.hidden = take.hidden = true; // until a recipe is open
