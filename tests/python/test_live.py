@@ -14,7 +14,7 @@ from small_example import RECIPE, write_example
 
 import ringlet
 from ringlet import Curves, Groom, Live, Material, Solver, Strands, Touch, UserError, _core
-from ringlet.live import bodies
+from ringlet.live import bodies, default_contact
 
 Array = NDArray[np.float64]
 
@@ -441,3 +441,15 @@ def test_locks_that_are_lost_begin_again(groom: Groom) -> None:
     assert live.step() == "1 of 8 locks were lost and begin again as groomed"
     assert np.isfinite(live.positions).all()
     assert live.step() == ""
+
+
+def test_the_default_contact_is_that_of_the_style(groom: Groom) -> None:
+    locks = groom.locks
+
+    def style(**attributes: NDArray[np.generic]) -> str:
+        return default_contact(replace(groom, locks=replace(locks, curve={**locks.curve, **attributes})))[1]
+
+    radius, alone = np.full(len(locks), 1e-3), np.arange(len(locks))
+    assert style() == "curls"
+    assert style(strand_radius=radius) == style(strand_radius=radius, section=alone) == "locs"
+    assert style(strand_radius=radius, section=alone // 2) == "braids and twists"

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ringlet import _core
 from ringlet.data.errors import UserError
-from ringlet.data.groom import STRAND_RADIUS, Groom
+from ringlet.data.groom import SECTION, STRAND_RADIUS, Groom
 from ringlet.data.mesh import Mesh
 from ringlet.data.rigid import moved, rotation_vector
 from ringlet.live.bodies import Bodies, Palm, Poses
@@ -33,7 +33,7 @@ Array = NDArray[np.float64]
 
 GRAVITY = (0.0, -9.81, 0.0)  # [m/s²]
 # Stiffness of the crowd about a lock, force by its length and displacement, by style [N/m²]
-CONTACT = {"curls": 2.1e-4, "locs and braids": 5e-4}
+CONTACT = {"curls": 2.1e-4, "locs": 5e-4, "braids and twists": 2.4e-3}
 SOLVER = Solver(newton=2, tolerance=1e-5, integrator="backward_euler")
 
 CELL, MARGIN = 0.02, 0.1  # of the grid through which neighbours share motion, and how far it goes beyond the hair [m]
@@ -418,7 +418,10 @@ class Live:
 
 def default_contact(groom: Groom) -> tuple[float, str]:
     """How firmly neighbours hold a lock by default [N/m²], and the style of the groom that says so."""
-    style = "locs and braids" if STRAND_RADIUS in groom.locks.curve else "curls"
+    curve, style = groom.locks.curve, "curls"
+    if STRAND_RADIUS in curve:
+        sections = np.unique(curve.get(SECTION, groom.locks.ids))
+        style = "locs" if len(sections) == len(groom.locks) else "braids and twists"
     return CONTACT[style], style
 
 
