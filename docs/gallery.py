@@ -57,7 +57,9 @@ PAGE_FOOT = """
 ## What a groomer would still refuse
 
 - Wash-and-go: coils are of one size near the part, and their highlights read as beads.
-- Box braids: at the roots, hair gathers in pointed tufts, and two braids hang off the cheek.
+- Pictures are from before hair was gathered over a length at the roots of braids, and before the denoiser kept single
+  hairs. In them, hair of box braids gathers in pointed tufts.
+- Box braids: two braids hang off the cheek.
 - Locs: at part lines, hair gathers in tufts, without new growth that stands; ridges along a loc are too even.
 - Cornrows: hairs that join the lower rows stand off like the teeth of a comb; rows begin as blunt as a brush.
 - Flat twists: the rows over the ears are wide and begin as blunt as a brush.

@@ -30,6 +30,7 @@ FRIZZ_KNOTS = 8
 PLASTIC = np.array([0.7548776662466927, 0.5698402909980532])  # steps of a low-discrepancy sequence in the plane
 MIRRORED = 1e-4  # distance from the region from which a root is mirrored at its border [m]
 LATEST_JOIN = 0.9  # part of a lock
+FIRST_JOIN, LAST_JOIN = 0.6, 2.2  # factor on it for hair at the strand and at the border of its share
 PACE_EASE = 0.3  # half the part of `root_falloff` over which a flat hair turns into its lock
 
 
@@ -62,6 +63,7 @@ def place_hairs(groom: Groom, settings: HairSettings, fraction: float, wider: bo
     if shared.any():
         of = lock[shared]
         places[shared] = scattered(locks.curve[REACH][of], roots[of], frames[of, :, 2], disk[shared])
+        joins[shared] = np.minimum(joins[shared] * _gathered(disk[shared]), LATEST_JOIN)
     root_triangle, root_barycentric = _rooted(groom, places)
     root_triangle[~hairs.free] = locks.curve["root_triangle"]
     root_barycentric[~hairs.free] = locks.curve["root_barycentric"]
@@ -172,6 +174,15 @@ def _fed(
     at = (chance + number[:, None] * PLASTIC) % 1.0  # a low-discrepancy sequence (Roberts 2018)
     found = fed(locks[lock], middle, solid, own[REACH][lock], own[LAID][lock] / length, own[JOIN][lock] / length, at)
     return found.places, found.joins
+
+
+def _gathered(disk: NDArray) -> NDArray[np.float64]:
+    """Factor on where hairs join a strand, for their places in its share, carried to the unit disk, shape (n,).
+
+    Hair near the strand joins it first, and hair from the part lines last, where the strands are together. Were all to
+    join at one height, each share would stand as a tent, with skin between the tents of a section.
+    """
+    return FIRST_JOIN + (LAST_JOIN - FIRST_JOIN) * np.minimum(np.linalg.norm(disk, axis=1), 1.0)
 
 
 def lock_joins(locks: Curves) -> NDArray[np.float64]:
