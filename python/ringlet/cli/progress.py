@@ -1,7 +1,12 @@
-"""Progress on the error stream: bars with rate and time left on a terminal, a plain line now and then elsewhere."""
+"""Progress on the error stream: bars with rate and time left on a terminal, a plain line now and then elsewhere.
+
+With ``RINGLET_PROGRESS=openjd`` in the environment each line is followed by the percentage of its stage, as farms of
+Open Job Description read it.
+"""
 
 from __future__ import annotations
 
+import os
 import sys
 import threading
 import time
@@ -164,6 +169,8 @@ class Lines:
                 self._ended.add(stage)
             left = f", {words}" if (words := pace.left(now, total)) else ""
             print(f"{stage}: {done}/{total}, {now - pace.began:.1f} s{left}", file=sys.stderr, flush=True)
+            if os.environ.get("RINGLET_PROGRESS") == "openjd":
+                print(f"openjd_progress: {100.0 * done / max(total, 1):.1f}", file=sys.stderr, flush=True)
 
     def report_long_step(self) -> None:
         """Prints a line if the step in progress takes long, and the last line is as old."""

@@ -28,10 +28,15 @@ def write_template(path: Path, shot: Path, choices: Sequence[Choice], options: T
 
     Raises UserError for a path that does not end in .json.
     """
+    write_job(path, template(shot, choices, options))
+
+
+def write_job(path: Path, job: dict[str, Any]) -> None:
+    """Writes a job template as JSON. Raises UserError for a path that does not end in .json."""
     if path.suffix != ".json":
         raise UserError(f"{path}: ends in '{path.suffix}'; must end in .json, such as wedge.template.json")
     with replacing(path) as aside:
-        aside.write_text(json.dumps(template(shot, choices, options), indent=2) + "\n", encoding="utf-8")
+        aside.write_text(json.dumps(job, indent=2) + "\n", encoding="utf-8")
 
 
 def template(shot: Path, choices: Sequence[Choice], options: TaskOptions) -> dict[str, Any]:
@@ -54,8 +59,8 @@ def template(shot: Path, choices: Sequence[Choice], options: TaskOptions) -> dic
         "specificationVersion": VERSION,
         "name": f"Ringlet: {shot.name}"[:MAX_NAME],
         "parameterDefinitions": [
-            _path("Shot", "FILE", "INOUT", "The shot; what it names must be where it says"),
-            _path("Folder", "DIRECTORY", "OUT", "Where the results go"),
+            path_parameter("Shot", "FILE", "INOUT", "The shot; what it names must be where it says"),
+            path_parameter("Folder", "DIRECTORY", "OUT", "Where the results go"),
             {"name": "Ringlet", "type": "STRING", "default": "ringlet", "description": "The command ringlet"},
         ],
         "steps": [
@@ -73,7 +78,11 @@ def _script(words: list[str]) -> dict[str, Any]:
     return {"actions": {"onRun": {"command": "{{Param.Ringlet}}", "args": words}}}
 
 
-def _path(name: str, kind: str, flow: str, about: str) -> dict[str, str]:
+def path_parameter(name: str, kind: str, flow: str, about: str) -> dict[str, str]:
+    """The definition of a parameter that is a path, which farms map.
+
+    kind, flow: ``FILE`` or ``DIRECTORY``; ``IN``, ``OUT`` or ``INOUT``
+    """
     return {"name": name, "type": "PATH", "objectType": kind, "dataFlow": flow, "description": about}
 
 
