@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from commands import edit
 from halts import halts
+from ringlet.api.shots import can_resume, run_inputs
 from ringlet.cli.app import app
 from ringlet.io import open_cache, read_cache, read_touches
 from ringlet.sim import checkpoint
@@ -87,6 +88,16 @@ def test_a_killed_run_resumes_to_bit_identical_frames(folder, expected):
     assert result.exit_code == 0 and len(before) >= 20
     assert (read_cache(folder / "cache.usdc").points == expected).all()
     assert not part.exists()
+
+
+def test_another_machine_goes_on_with_a_copy_of_the_folder(folder, tmp_path_factory, expected):
+    killed(folder, lambda: (folder / "cache.usdc.part/memory.000020").exists())
+    other = tmp_path_factory.mktemp("other") / "place"
+    folder.rename(other)
+    inputs = run_inputs(ringlet.read_shot(other / "small.shot.toml"), ringlet.load_groom(other / "small.recipe.toml"))
+    assert can_resume(other / "cache.usdc.part", inputs)
+    assert sim(other, "--resume").exit_code == 0
+    assert (read_cache(other / "cache.usdc").points == expected).all()
 
 
 def test_larger_scenes_are_saved_more_often(folder, monkeypatch):
