@@ -157,6 +157,7 @@ test("a page that follows takes snapshots, and loads none", async () => {
   press("s", {}, page.app.viewer.canvas);
   expect(page.last("take_snapshot")).toMatchObject({ author: "", picture: "AAAA", look: page.app.look.state });
   page.hear({ kind: "snapshots", snapshots: [{ id: "1", author: "", note: "", time: "2026-01-01T10:00:00", look: page.app.look.state, seconds: 0 }] });
+  press("t", {}, page.app.viewer.canvas);
   expect(control<HTMLButtonElement>("Load: use its settings").disabled).toBe(true);
   two(page, true);
   expect(control<HTMLButtonElement>("Load: use its settings").disabled).toBe(false);
