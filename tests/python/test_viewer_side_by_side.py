@@ -141,6 +141,5 @@ def test_a_snapshot_and_another_recipe_move_live_and_a_take_plays(folder: Path) 
         live(one)
         one.send(kind="compare", to="snapshot", name=taken["id"], side="b")
         one.send(kind="compare", to="file", name="wide.recipe.toml", side="c")
-        rods = {message["side"]: message for message in (one.receive("rods"), one.receive("rods"))}
-        assert set(rods) == {"b", "c"}
+        rods = {side: one.latest("rods", side=side) for side in ("b", "c")}
         assert one.receive("live_step", side="c")["points"].shape == rods["c"]["points"].shape

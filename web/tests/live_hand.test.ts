@@ -141,4 +141,5 @@ test("next to another look, the hand touches the open one where it is drawn, and
   point("pointerdown", { x: seen.x + clear.width / 2, y: seen.y }); // the same place on the other look
   vi.advanceTimersByTime(50);
   expect(page.said("touch_hair").length).toBe(before);
+  point("pointerup", seen);
 });

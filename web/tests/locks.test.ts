@@ -93,7 +93,7 @@ test("next to another look, a click chooses a lock of the open one where it is d
   const highest = Array.from({ length: offsets.length - 1 }, (_, k) => k).sort((a, b) => points[3 * offsets[b + 1] - 2] - points[3 * offsets[a + 1] - 2])[0];
   const seen = viewer.seenAt(new Vector3().fromArray(points, 3 * (offsets[highest + 1] - 1)))!;
   const click = (x: number) => {
-    for (const name of ["pointerdown", "click"]) viewer.canvas.dispatchEvent(new PointerEvent(name, { clientX: x, clientY: seen.y, bubbles: true }));
+    for (const name of ["pointerdown", "pointerup", "click"]) viewer.canvas.dispatchEvent(new PointerEvent(name, { clientX: x, clientY: seen.y, bubbles: true }));
   };
   click(seen.x + viewer.clear.width / 2); // the same place on the other look
   expect(lock.ids).toEqual([]);
