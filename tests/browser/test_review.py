@@ -143,13 +143,15 @@ def test_guides_are_sculpted_with_a_brush(opened: Any):
     assert np.linalg.norm(after - before, axis=1)[offsets[front + 1] - 1] > 0.003
     assert np.array_equal(after[offsets[:-1]], before[offsets[:-1]])  # roots stay
     eye = review.get("ringlet.viewer.camera.position.toArray()")
-    page.mouse.move(260, 600)
+    clear = review.get("ringlet.viewer.clear")
+    x, y = clear["x"] + 10, clear["y"] + 10
+    page.mouse.move(x, y)
     page.mouse.down()  # a stroke beside the hair does nothing
-    page.mouse.move(300, 600, steps=2)
+    page.mouse.move(x + 40, y, steps=2)
     page.mouse.up()
     assert review.get("ringlet.viewer.camera.position.toArray()") == eye
     page.mouse.down(button="right")  # the right button turns the head
-    page.mouse.move(340, 600, steps=2)
+    page.mouse.move(x + 80, y, steps=2)
     page.mouse.up(button="right")
     assert review.get("ringlet.viewer.camera.position.toArray()") != eye
     page.keyboard.press("Control+z")
