@@ -13,10 +13,10 @@ from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
 from ringlet.data.picture import PictureSettings
 from ringlet.picture import HAIR_COLORS, VIEWS, Pose, PosedBody, sheet, still
-from ringlet.picture.along import hair_field
 from ringlet.picture.bodies import material
 from ringlet.picture.camera import frame
 from ringlet.picture.engine import mitsuba
+from ringlet.picture.hair_field import hair_field
 from ringlet.picture.render import trace
 from ringlet.picture.scene import build_scene
 from ringlet.picture.sheet import subsample

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import scipy
 from ringlet.picture import oidn
-from ringlet.picture.along import HairField
+from ringlet.picture.hair_field import HairField
 from ringlet.picture.passes import Passes
 
 pytest.importorskip("pyoidn")
@@ -23,13 +23,11 @@ def accumulate(passes: np.ndarray) -> Passes:
 def test_fireflies_are_spread_over_their_neighbourhood_and_light_is_conserved() -> None:
     passes = np.full((5, 40, 40, 4), 0.5)
     passes[2, 20, 20, :3] += 5.0  # a firefly in one pass
-    total = passes.sum(axis=0)
-    even, odd = accumulate(passes).without_specks()
-    denoised = even + odd
-    assert denoised[20, 20, 0] < 0.6 * total[20, 20, 0]
-    assert denoised[:, :, :3].sum() == pytest.approx(total[:, :, :3].sum(), rel=1e-3)
-    assert np.array_equal(denoised[:, :, 3], total[:, :, 3])
-    assert even[20, 20, 0] / odd[20, 20, 0] < 2.0  # three passes against two, with the firefly removed from its half
+    mean = passes.mean(axis=0)
+    denoised = accumulate(passes).without_specks()
+    assert denoised[20, 20, 0] < 0.6 * mean[20, 20, 0]
+    assert denoised[:, :, :3].sum() == pytest.approx(mean[:, :, :3].sum(), rel=1e-3)
+    assert np.array_equal(denoised[:, :, 3], mean[:, :, 3])
 
 
 @pytest.mark.parametrize("where", [0, 1, 2])
@@ -52,18 +50,6 @@ def test_denoising_removes_noise_and_keeps_edges() -> None:
     assert np.abs(oidn.denoise(clean) - clean).mean() < 1e-2
 
 
-def test_detail_of_hair_adds_no_light() -> None:
-    passes = np.random.default_rng(7).gamma(0.5, 1.0, (6, 60, 60, 4))
-    passes[:, :, ::3] *= 2.0  # single hairs
-    passes[:, :, :, 3] = 1.0
-    accumulated, upright = accumulate(passes), np.broadcast_to(np.float32([-1.0, 0.0]), (60, 60, 2))
-    even = np.full((60, 60, 4), accumulated.mean().mean(axis=(0, 1)))
-    layers = np.zeros((60, 60, 5), np.float32)
-    detail = accumulated.detail(even, HairField(np.ones((60, 60), np.float32), upright, layers))
-    assert np.abs(detail[10:-10, 12:-12, :3].mean()) < 0.01 * even[0, 0, :3].mean()
-    assert detail[:, 12:-12:3, :3].mean() > 0.2 * even[0, 0, :3].mean()
-
-
 def test_relief_brings_back_the_edges_of_hairs_that_the_denoiser_blurred() -> None:
     rng, size = np.random.default_rng(5), (80, 80)
     depth = scipy.ndimage.gaussian_filter(rng.normal(size=size), (8.0, 0.6))  # hairs a pixel wide
@@ -75,8 +61,7 @@ def test_relief_brings_back_the_edges_of_hairs_that_the_denoiser_blurred() -> No
     passes = np.concatenate([truth[:, :, :3] * shown, np.ones((6, *size, 1))], axis=3)
     blurred = np.full((*size, 4), (0.1, 0.1, 0.1, 1.0))
     layers = np.stack([share, depth, 0.0 * depth, 0.0 * depth, 0.0 * depth], axis=2).astype(np.float32)
-    upright = np.broadcast_to(np.float32([-1.0, 0.0]), (*size, 2))
-    sharp = accumulate(passes).relief(blurred, HairField(share, upright, layers))
+    sharp = accumulate(passes).relief(blurred, HairField(share, layers))
     hair = np.s_[8:-8, 8:52, 0]
     assert np.corrcoef(sharp[hair].ravel(), truth[hair].ravel())[0, 1] > 0.8
     assert 0.6 < sharp[hair].std() / truth[hair].std() < 1.2

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from ringlet.data.camera import Camera
 from ringlet.data.pigment import HairColor
 from ringlet.picture import oidn
-from ringlet.picture.along import hair_field
 from ringlet.picture.engine import mitsuba
 from ringlet.picture.fiber import hair_reflectances
+from ringlet.picture.hair_field import hair_field
 from ringlet.picture.layers import HairGroup, Later, Layers, trace_layers
 from ringlet.picture.motion import Pose, fraction_of_pass
 from ringlet.picture.passes import Passes
@@ -101,10 +101,8 @@ def trace_growing(
 
 
 def _denoised(scene: Scene, accumulated: Passes) -> NDArray[np.float32]:
-    """The mean of at least three passes without noise, with the detail of its hair."""
-    denoised, hair = oidn.denoise(accumulated.mean()), hair_field(mitsuba(), scene)
-    sharp = accumulated.relief(denoised, hair)
-    return np.asarray(sharp + hair.share[:, :, None] * accumulated.detail(sharp, hair), np.float32)
+    """The mean of at least three passes without noise, with the edges of its hairs."""
+    return np.asarray(accumulated.relief(oidn.denoise(accumulated.mean()), hair_field(mitsuba(), scene)), np.float32)
 
 
 def layers_of(scene: Scene, camera: Camera, color: HairColor | None, pose: Pose, later: Later | None = None) -> Layers:
