@@ -30,7 +30,7 @@ FRIZZ_KNOTS = 8
 PLASTIC = np.array([0.7548776662466927, 0.5698402909980532])  # steps of a low-discrepancy sequence in the plane
 MIRRORED = 1e-4  # distance from the region from which a root is mirrored at its border [m]
 LATEST_JOIN = 0.9  # part of a lock
-FIRST_JOIN, LAST_JOIN = 0.6, 2.2  # factor on it for hair at the strand and at the border of its share
+FIRST_JOIN, LAST_JOIN = 0.4, 1.5  # factor on it for hair at the strand and at the border of its share
 PACE_EASE = 0.3  # half the part of `root_falloff` over which a flat hair turns into its lock
 
 
