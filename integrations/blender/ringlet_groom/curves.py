@@ -11,8 +11,12 @@ from mathutils import Matrix
 from .refused import Refused
 
 # Of attributes, by the shape of a value: the type, and what it is called in there.
-KINDS = {(): ("FLOAT", "value"), (2,): ("FLOAT2", "vector"), (3,): ("FLOAT_VECTOR", "vector")}
-KINDS[4, 4] = ("FLOAT4X4", "value")
+KINDS = {
+    (): ("FLOAT", "value"),
+    (2,): ("FLOAT2", "vector"),
+    (3,): ("FLOAT_VECTOR", "vector"),
+    (4, 4): ("FLOAT4X4", "value"),
+}
 MOST_SUBDIVISIONS = 3  # of curves in the viewport
 ID_HALVES = ("id_high", "id_low")  # Blender has no attributes of 64-bit integers
 

@@ -91,9 +91,8 @@ def frames(corners: NDArray) -> tuple[NDArray, NDArray]:
 
 def _group() -> bpy.types.NodeTree:
     """The nodes, made once for a .blend."""
-    if (
-        found := next((one for one in bpy.data.node_groups if one.name == GROUP and not one.library), None)
-    ) is not None:
+    found = next((one for one in bpy.data.node_groups if one.name == GROUP and not one.library), None)
+    if found is not None:
         return found
     group = bpy.data.node_groups.new(GROUP, "GeometryNodeTree")
     group.is_modifier = True

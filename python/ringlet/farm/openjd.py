@@ -1,7 +1,7 @@
-"""A wedge as a job of Open Job Description, for render farms.
+"""Jobs of Open Job Description, for render farms, and a wedge as one.
 
-Specification: https://github.com/OpenJobDescription/openjd-specifications/wiki. The first step has one task for each
-combination of settings; the second writes the page that compares them.
+Specification: https://github.com/OpenJobDescription/openjd-specifications/wiki. The first step of a wedge has one task
+for each combination of settings; the second writes the page that compares them.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def template(shot: Path, choices: Sequence[Choice], options: TaskOptions) -> dic
     sets = [f"--set={choice.name}={{{{Task.Param.{name}}}}}" for name, choice in zip(names, choices, strict=True)]
     simulate: dict[str, Any] = {
         "name": "Simulate",
-        "script": _script(["wedge", *shot_and_folder, *sets, "--here", *_arguments(options)]),
+        "script": script(["wedge", *shot_and_folder, *sets, "--here", *_arguments(options)]),
     }
     if choices:
         simulate["parameterSpace"] = {
@@ -55,27 +55,37 @@ def template(shot: Path, choices: Sequence[Choice], options: TaskOptions) -> dic
                 for name, choice in zip(names, choices, strict=True)
             ]
         }
+    compare = {
+        "name": "Compare",
+        "dependencies": [{"dependsOn": "Simulate"}],
+        "script": script(["wedge", *shot_and_folder, "--compare"]),
+    }
+    return job(shot, [path_parameter("Folder", "DIRECTORY", "OUT", "Where the results go")], [simulate, compare])
+
+
+def job(shot: Path, parameters: list[dict[str, Any]], steps: list[dict[str, Any]], **more: Any) -> dict[str, Any]:
+    """The template of a job about a shot, with the shot and the command ringlet as its first parameters."""
+    own = [
+        path_parameter("Shot", "FILE", "INOUT", "The shot; what it names must be where it says"),
+        value_parameter("Ringlet", "STRING", "The command ringlet", default="ringlet"),
+    ]
     return {
         "specificationVersion": VERSION,
         "name": f"Ringlet: {shot.name}"[:MAX_NAME],
-        "parameterDefinitions": [
-            path_parameter("Shot", "FILE", "INOUT", "The shot; what it names must be where it says"),
-            path_parameter("Folder", "DIRECTORY", "OUT", "Where the results go"),
-            {"name": "Ringlet", "type": "STRING", "default": "ringlet", "description": "The command ringlet"},
-        ],
-        "steps": [
-            simulate,
-            {
-                "name": "Compare",
-                "dependencies": [{"dependsOn": "Simulate"}],
-                "script": _script(["wedge", *shot_and_folder, "--compare"]),
-            },
-        ],
+        "parameterDefinitions": own + parameters,
+        **more,
+        "steps": steps,
     }
 
 
-def _script(words: list[str]) -> dict[str, Any]:
-    return {"actions": {"onRun": {"command": "{{Param.Ringlet}}", "args": words}}}
+def script(words: list[str], **more: Any) -> dict[str, Any]:
+    """What a task runs: ringlet with words of the command line; ``more`` such as a timeout [s]."""
+    return {"actions": {"onRun": {"command": "{{Param.Ringlet}}", "args": words, **more}}}
+
+
+def value_parameter(name: str, kind: str, about: str, **more: Any) -> dict[str, Any]:
+    """The definition of a parameter that is no path, with its default and its bounds."""
+    return {"name": name, "type": kind, "description": about, **more}
 
 
 def path_parameter(name: str, kind: str, flow: str, about: str) -> dict[str, str]:

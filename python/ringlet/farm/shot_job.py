@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ringlet.api.shots import read_shot
-from ringlet.farm.openjd import MAX_NAME, VERSION, path_parameter, write_job
+from ringlet.farm.openjd import job, path_parameter, script, value_parameter, write_job
 from ringlet.shot import Shot
 
 FOLDER = "{{Param.Folder}}"
@@ -24,9 +24,9 @@ def write_shot_template(path: Path | str, shot: Path | str) -> list[str]:
 
     Raises UserError for a path that does not end in .json, and for a shot that is not valid.
     """
-    job = template(read_shot(Path(shot)))
-    write_job(Path(path), job)
-    return [step["name"] for step in job["steps"]]
+    made = template(read_shot(Path(shot)))
+    write_job(Path(path), made)
+    return [step["name"] for step in made["steps"]]
 
 
 def template(shot: Shot) -> dict[str, Any]:
@@ -37,8 +37,7 @@ def template(shot: Shot) -> dict[str, Any]:
     steps: list[dict[str, Any]] = []
 
     def add(name: str, words: list[str], hours: int, **more: Any) -> None:
-        action = {"command": "{{Param.Ringlet}}", "args": words, "timeout": hours * HOUR}
-        step = {"name": name, "script": {"actions": {"onRun": action}}, **more}
+        step = {"name": name, "script": script(words, timeout=hours * HOUR), **more}
         if steps:
             step["dependencies"] = [{"dependsOn": steps[-1]["name"]}]
         steps.append(step)
@@ -56,35 +55,22 @@ def template(shot: Shot) -> dict[str, Any]:
     render += ["--width", "{{Param.Width}}", "--samples", "{{Param.Samples}}"]
     add("Render", render, 12, parameterSpace={"taskParameterDefinitions": [frame]}, **needs(4))
     first, last = shot.frames
-    return {
-        "specificationVersion": VERSION,
-        "name": f"Ringlet: {shot.path.name}"[:MAX_NAME],
-        "parameterDefinitions": [
-            path_parameter("Shot", "FILE", "INOUT", "The shot; what it names must be where it says"),
-            path_parameter("Groom", "FILE", "IN", "The recipe, or the groom, of the shot"),
-            path_parameter("Folder", "DIRECTORY", "INOUT", "Where groom, cache, hairs and frames go"),
-            _value("Ringlet", "STRING", "ringlet", "The command ringlet"),
-            {
-                "name": "Camera",
-                "type": "STRING",
-                "description": "The prim of the camera, among those of the head's file",
-            },
-            _value("Frames", "STRING", f"{first}-{last}", "Frames of the pictures, such as 1-24 or 1-24:2"),
-            _value("Format", "STRING", "png", "Of the pictures", allowedValues=["png", "exr"]),
-            _value("Width", "INT", 1280, "Pixels across", minValue=1),
-            _value("Samples", "INT", 40, "Light paths of a pixel", minValue=1),
-            _value("Fraction", "FLOAT", 1.0, "Of the hairs to make", minValue=0.001, maxValue=1.0),
-        ],
-        "jobEnvironments": [{"name": "Progress", "variables": PROGRESS}],
-        "steps": steps,
-    }
+    parameters = [
+        path_parameter("Groom", "FILE", "IN", "The recipe, or the groom, of the shot"),
+        path_parameter("Folder", "DIRECTORY", "INOUT", "Where groom, cache, hairs and frames go"),
+        value_parameter("Camera", "STRING", "The prim of the camera, among those of the head's file"),
+        value_parameter(
+            "Frames", "STRING", "Frames of the pictures, such as 1-24 or 1-24:2", default=f"{first}-{last}"
+        ),
+        value_parameter("Format", "STRING", "Of the pictures", default="png", allowedValues=["png", "exr"]),
+        value_parameter("Width", "INT", "Pixels across", default=1280, minValue=1),
+        value_parameter("Samples", "INT", "Light paths of a pixel", default=40, minValue=1),
+        value_parameter("Fraction", "FLOAT", "Of the hairs to make", default=1.0, minValue=0.001, maxValue=1.0),
+    ]
+    return job(shot.path, parameters, steps, jobEnvironments=[{"name": "Progress", "variables": PROGRESS}])
 
 
 def needs(processors: int) -> dict[str, Any]:
     """A host with at least so many processors, and 2 GiB of memory for each."""
     amounts = {"amount.worker.vcpu": processors, "amount.worker.memory": 2048 * processors}
     return {"hostRequirements": {"amounts": [{"name": name, "min": least} for name, least in amounts.items()]}}
-
-
-def _value(name: str, kind: str, default: Any, about: str, **bounds: Any) -> dict[str, Any]:
-    return {"name": name, "type": kind, "default": default, "description": about, **bounds}

@@ -39,7 +39,7 @@ ITERATIONS = 6  # of a step in contact
 LEAST_SWING = 1e-3  # of tips in contact, below which nothing is found [m]
 SOFTEST, FIRMEST = 1e-5, 1e-2  # that is looked for [N/m²]
 HALVINGS = 6  # of that range, on a logarithmic scale: to 6 %
-LOOKS = 0.5  # how often a process looks whether its parent is there [s]
+POLL = 0.5  # after which a process checks again that its parent is there [s]
 
 
 @dataclass(frozen=True)
@@ -185,5 +185,5 @@ def _swing(tips: Array) -> float:
 def _end_with(parent: int) -> None:
     """Ends this process once the one that started it is gone, also where that was killed."""
     while os.getppid() == parent:
-        time.sleep(LOOKS)
+        time.sleep(POLL)
     os._exit(1)

@@ -12,7 +12,8 @@ export interface DockTab {
   element: HTMLElement;
   /** Buttons above it. */
   actions: HTMLElement[];
-  count: () => number;
+  /** Number of its entries; none: it has none. */
+  count?: () => number;
   /** Whether there is anything to show; none: always. */
   offered?: () => boolean;
   /** Whether it is kept next to the recipe. */
@@ -84,7 +85,7 @@ export class Dock {
     const offered = this.offered();
     const { current } = this;
     for (const { tab, button, panel } of this.tabs) {
-      const count = tab.count();
+      const count = tab.count?.();
       button.textContent = count ? `${tab.title} ${count}` : tab.title;
       button.hidden = !offered.some((one) => one.tab === tab);
       button.setAttribute("aria-selected", String(tab === current));

@@ -19,7 +19,7 @@ export class Settings {
   readonly element = h("div", { class: "settings" });
   private readonly controls = h("fieldset", { class: "fields", "aria-label": "Settings of the stage" });
   private readonly readOnly = h("p", { class: "hint", hidden: true }, "You can read and search the settings. To change them, ask to edit.");
-  readonly tab: DockTab = { title: "Settings", element: this.element, actions: [], count: () => 0, offered: () => Object.keys(this.model.documents).length > 0 };
+  readonly tab: DockTab = { title: "Settings", element: this.element, actions: [], offered: () => Object.keys(this.model.documents).length > 0 };
   private readonly more = h("button", { type: "button", class: "quiet more" });
   readonly search: SettingSearch;
   private fields: Field[] = [];

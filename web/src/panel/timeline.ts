@@ -55,7 +55,7 @@ export class TimelineBar {
     private readonly seen: (frame: Frame) => void,
   ) {
     this.swing = new SwingChart(model, (frame) => this.goTo(frame));
-    this.tab = { title: "Chart", element: this.swing.element, actions: [], count: () => 0, offered: () => model.timeline !== null, shown: () => this.swing.show(this.frame) };
+    this.tab = { title: "Chart", element: this.swing.element, actions: [], offered: () => model.timeline !== null, shown: () => this.swing.show(this.frame) };
     model.hear("frame", (frame) => this.add(frame));
     model.hear("hairs", ({ side }) => this.displaced(side));
     model.hear("locks", ({ side }) => this.displaced(side));
