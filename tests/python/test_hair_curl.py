@@ -5,7 +5,7 @@ import pytest
 from shapes import sheet
 
 from ringlet import UserError
-from ringlet.groom import HairMemory, make_groom, make_hairs, parse_recipe
+from ringlet.groom import HairMemory, lay_hairs, make_groom, make_hairs, parse_recipe
 
 RECIPE = """
 ringlet = 2
@@ -179,6 +179,18 @@ def test_families_wind_at_a_pitch_of_their_own():
     turns = 12.0 * 119 / 239  # of the lock there
     assert np.abs(more).max() < 0.31 * turns and np.abs(more).max() > 0.15 * turns
     assert all(len(np.unique(np.round(of_lock, 2))) <= 8 for of_lock in more)  # with the lock itself
+
+
+def test_wider_locks_keep_the_layout_of_hairs_that_curl():
+    curl = "[hairs.families]\n[hairs.curl]\n"
+    memory = HairMemory()
+    laid = lay_hairs(groom(curl), memory=memory)
+    wide = lay_hairs(groom(curl, RECIPE.replace("width = 1\n", "width = 1.2\n")), memory=memory)
+    assert wide.curves is laid.curves  # a page that has this layout needs no other
+    tighter = lay_hairs(groom(curl, RECIPE.replace("pitch = 1\n", "pitch = 0.7\n")), memory=memory)
+    assert (laid.windows.tolist(), tighter.windows.tolist()) == ([20] * 6, [14] * 6)
+    other = lay_hairs(groom(curl + "drift = 0.2\n"), memory=memory)
+    assert other.curves is not laid.curves
 
 
 def test_cached_hairs_with_a_curl_equal_rebuilt_hairs():

@@ -69,7 +69,7 @@ def gravity(leader: Page, k: int) -> None:
 
 
 def groom(leader: Page, k: int) -> None:
-    change = [["curl", "width"], 2.0 - 0.4 * (k % 2)]
+    change = [["curl", "width", "value"], 1.2 - 0.01 * k]
     leader.send(kind="set", changes=[change], gesture=2000 + k, resting=False)
     leader.receive("live_step", key=leader.receive("rods")["key"])
 

@@ -1,6 +1,6 @@
 // Made by tools/make_protocol.py from python/ringlet/viewer/protocol; change it there.
 
-export const VERSION = 13;
+export const VERSION = 14;
 export type Json = string | number | boolean | null | Json[] | { [key: string]: Json };
 
 /** A stage of the groom. place: path of its settings in the recipe. */
@@ -692,6 +692,7 @@ export interface Locks {
   ids: Float64Array;
   axis: Float32Array;
   marked: Uint8Array;
+  window: Int32Array;
 }
 
 /** Positions of the guides; ``changed`` is 1 for sculpted ones, ``frozen`` for those that brushes leave. */
@@ -737,7 +738,6 @@ export interface Hairs {
   blend: Float32Array;
   width: Float32Array;
   thinning: Float32Array;
-  window: Int32Array;
   slip: Float32Array;
   escape: Float32Array;
   relax: Float32Array;

@@ -43,6 +43,11 @@ class Hairs:
         """These, as those of the only groom."""
         return [self]
 
+    @property
+    def windows(self) -> NDArray[np.integer]:
+        """Points of a turn of each lock's coil, shape (locks,); empty where hairs only follow their lock."""
+        return self.layout["window"]
+
     def deformed(
         self,
         lock_points: NDArray,

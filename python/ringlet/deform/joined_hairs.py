@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ringlet.data.curves import Curves
 from ringlet.deform.hairs import Hairs
-from ringlet.deform.joined_layout import joined_layout
+from ringlet.deform.joined_layout import joined_layout, joined_windows
 
 
 @dataclass
@@ -33,6 +33,11 @@ class JoinedHairs:
     def parts(self) -> list[Hairs]:
         """Hairs of each groom alone."""
         return list(self.members.values())
+
+    @property
+    def windows(self) -> NDArray[np.integer]:
+        """Points of a turn of each lock's coil, as ``Hairs.windows``."""
+        return joined_windows([(hairs.layout, len(hairs.groom.locks)) for hairs in self.parts])
 
     def deformed(
         self,

@@ -40,7 +40,7 @@ def _joined_curl(each: list[Layout], counts: list[int], knots: int) -> Layout:
     """Curls of the hairs; zero where those of a groom follow their lock alone."""
     sample = next((of["curl"] for of in each if of["curl"]), None)
     if sample is None:
-        return {"curl": {}, "window": np.empty(0)}
+        return {"curl": {}, "window": np.empty(0, np.int32)}
 
     def of_groom(of: Layout, count: int, name: str) -> NDArray:
         points = len(of["profile"])
@@ -55,8 +55,14 @@ def _joined_curl(each: list[Layout], counts: list[int], knots: int) -> Layout:
     curl = {
         name: np.concatenate([of_groom(of, n, name) for of, n in zip(each, counts, strict=True)]) for name in sample
     }
-    windows = [_filled(of["window"], np.zeros(len(of["axis"]))) for of in each]
-    return {"curl": curl, "window": np.concatenate(windows)}
+    return {"curl": curl, "window": joined_windows([(of, len(of["axis"])) for of in each])}
+
+
+def joined_windows(each: list[tuple[Layout, int]]) -> NDArray[np.integer]:
+    """Points of a turn of each lock's coil, of layouts with their number of locks; empty where no hairs curl."""
+    if not any(of["curl"] for of, _ in each):
+        return np.empty(0, np.int32)
+    return np.concatenate([_filled(of["window"], np.zeros(locks, np.int32)) for of, locks in each])
 
 
 def _with_knots(values: NDArray, knots: int, size: int = 2) -> NDArray:

@@ -26,11 +26,13 @@ from ringlet.groom.shares import LAID, REACH
 class HairMemory:
     """Cache of the last hairs, valid while the locks keep their roots.
 
+    curled: the last layout of the curl of hairs, and curves that stand for it
     grooms, joined: caches of each of several grooms by name, and their curves with those that are joined of them
     """
 
     key: bytes = b""
     hairs: Hairs | None = None
+    curled: tuple[dict[str, Any], Curves] | None = None
     grooms: dict[str, HairMemory] = field(default_factory=dict)
     joined: tuple[list[Curves], Curves] | None = None
 
@@ -59,14 +61,22 @@ def lay_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memor
     groom.check_bound("hairs")
     key = _key(groom, settings, fraction, wider)
     if memory.hairs is None or memory.key != key:
-        memory.key, memory.hairs = key, _placed(groom, settings, fraction, wider)
+        memory.key, memory.hairs, memory.curled = key, _placed(groom, settings, fraction, wider), None
     cached = memory.hairs
     assert cached.frames is not None
     axis = np.einsum("lxk,lx->lk", cached.frames, axes(groom.locks, cached.frames))
     layout = _with_lengths(cached, groom.locks)
-    # Whoever keeps a layout compares curves: with a curl of hairs it changes with the locks.
-    curves = cached.curves if layout is cached.layout else replace(cached.curves)
+    curves = cached.curves
+    if layout["curl"]:  # whoever keeps a layout compares curves, so that another curl needs others
+        if memory.curled is None or not _alike(layout["curl"], memory.curled[0]):
+            memory.curled = layout["curl"], replace(curves)
+        curves = memory.curled[1]
     return Hairs(curves, groom, axis, layout, cached.root, cached.frames)
+
+
+def _alike(one: dict[str, np.ndarray], other: dict[str, np.ndarray]) -> bool:
+    """Whether two layouts of the curl of hairs hold the same numbers."""
+    return one.keys() == other.keys() and all(np.array_equal(one[name], other[name]) for name in one)
 
 
 def _placed(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -> Hairs:

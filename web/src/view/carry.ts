@@ -179,7 +179,7 @@ export class Carry {
         points: { value: hairs.points },
         knots: { value: hairs.knots },
         left: { value: this.left.texture },
-        curled: { value: hairs.window.length > 0 },
+        curled: { value: false },
         live: { value: false },
         along: { value: new Float32Array(MOST_VERTICES) },
         vertices: { value: 2 },
@@ -255,6 +255,8 @@ export class Carry {
     this.put("lockB", table.b);
     this.put("lockU", table.u);
     this.put("lockV", table.v);
+    // Locks with the frames of their coils follow the hairs that need them: until then these follow their lock.
+    this.material.uniforms["curled"].value = this.hairs.coil.length > 0 && table.u.length > 4;
     this.setPlaces(table);
   }
 

@@ -225,7 +225,7 @@ export class Hair {
   place({ points, axis, root, drawn, left }: Placed): void {
     if (!this.locks || points.length !== this.locks.points.length) return;
     this.placed = points;
-    this.table = lockTable(points, this.locks.offsets, axis, this.carry?.hairs.window ?? new Int32Array());
+    this.table = lockTable(points, this.locks.offsets, axis, this.locks.window);
     this.setMarks(this.locks.marked);
     this.spread();
     this.carry?.setRoots(root?.length ? root : this.carry.hairs.root);

@@ -29,7 +29,8 @@ class Body(Message):
 class Locks(Message):
     """Positions of the locks. side: a, or another for a groom to compare with.
 
-    ``axis`` (locks, 3) is the reference direction of each lock; ``marked`` is 1 for isolated locks.
+    ``axis`` (locks, 3) is the reference direction of each lock; ``marked`` is 1 for isolated locks. ``window`` is the
+    number of points in a turn of each lock's coil; empty where hairs only follow their lock.
     """
 
     kind: Literal["locks"] = "locks"
@@ -41,6 +42,7 @@ class Locks(Message):
         "ids": "f8",
         "axis": "f4",
         "marked": "u1",
+        "window": "i4",
     }
 
 
@@ -68,7 +70,7 @@ class Hairs(Message):
     Any prefix of the hairs covers all locks evenly. ``profile``, ``hold``, ``pace``, ``blend`` and ``thinning`` are
     functions along the hairs of each groom, one groom after another; ``group`` is the groom of a hair. ``frizz`` has
     ``knots`` × 2 numbers a hair; ``root`` is the offset from the lock's root to the hair's. The diameter is ``width``
-    of the hair times ``thinning``. The arrays from ``window`` on are those of the curl of hairs; empty where these only
+    of the hair times ``thinning``. The arrays from ``slip`` on are those of the curl of hairs; empty where these only
     follow their lock.
     """
 
@@ -95,7 +97,6 @@ class Hairs(Message):
         "blend": "f4",
         "width": "f4",
         "thinning": "f4",
-        "window": "i4",
         **dict.fromkeys(("slip", "escape", "relax", "family", "coil", "phase"), "f4"),
         **dict.fromkeys(("escaping", "relaxing", "tight", "opening"), "f4"),
     }

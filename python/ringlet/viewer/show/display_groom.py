@@ -71,6 +71,7 @@ class DisplayGroom:
             ids=locks.ids,
             axis=axis,
             marked=np.isin(locks.ids, list(self.isolated)),
+            window=np.empty(0) if self.hairs is None else self.hairs.windows,
         )
 
     def layout(self, side: str) -> bytes:
@@ -238,7 +239,6 @@ def hairs_message(side: str, hairs: AnyHairs, scalp: Mesh) -> bytes:
         thinning=np.concatenate(
             [_thinning(widths[of], widest[of]) for of in (group == k for k in range(int(group[-1]) + 1))]
         ),
-        window=layout["window"],
         **NO_CURL | {name: values if name in RAMPS else values[order] for name, values in layout["curl"].items()},
     )
 
@@ -274,7 +274,6 @@ def curves_message(side: str, curves: Curves) -> bytes:
         blend=np.zeros(points),
         width=width[order],
         thinning=np.linspace(1.0, 0.4, points),
-        window=np.empty(0),
         **NO_CURL,
     )
 
