@@ -29,7 +29,10 @@ MOVES = 2e-4  # [m]
 
 
 def measure(times: int) -> dict[str, Any]:
-    """Lags of a head that is taken, of gravity that changes, and of a slider of the groom that is dragged."""
+    """Lags of a head that is taken, of gravity that changes, and of a slider of the groom that is dragged.
+
+    The locks of that slider come first, carried by the rods that are there, and its own rods later.
+    """
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name, "child")
         shutil.copytree(ROOT / "examples" / "child", folder)
@@ -37,7 +40,7 @@ def measure(times: int) -> dict[str, Any]:
             leader.receive("measured")
             leader.send(kind="go_live", on=True)
             leader.receive("live_step")
-            lags = {of.__name__: lags_of(of, leader, times) for of in (head, gravity, groom)}
+            lags = {of.__name__: lags_of(of, leader, times) for of in (head, gravity, locks, rods)}
     return {"name": "live_lag", "params": {"times": times}, **lags}
 
 
@@ -68,10 +71,18 @@ def gravity(leader: Page, k: int) -> None:
         pass
 
 
-def groom(leader: Page, k: int) -> None:
-    change = [["curl", "width", "value"], 1.2 - 0.01 * k]
-    leader.send(kind="set", changes=[change], gesture=2000 + k, resting=False)
+def locks(leader: Page, k: int) -> None:
+    drag_width(leader, 1.2 - 0.01 * k)
+    leader.receive("locks")
+
+
+def rods(leader: Page, k: int) -> None:
+    drag_width(leader, 1.2 + 0.01 * k)
     leader.receive("live_step", key=leader.receive("rods")["key"])
+
+
+def drag_width(leader: Page, width: float) -> None:
+    leader.send(kind="set", changes=[[["curl", "width", "value"], width]], gesture=2000, resting=False)
 
 
 if __name__ == "__main__":

@@ -40,7 +40,7 @@ class LiveHair:
         self._publisher, self._call, self._failed, self._watched = publisher, call, failed, watched
         self._scene: LiveScene | None = None
         self._compared: Mapping[Side, LiveScene] = {}
-        self._stopping = threading.Event()
+        self._stopping, self._changed = threading.Event(), threading.Event()
         self._thread: threading.Thread | None = None
         self._hand, self._state = Hand(), protocol.Live(on=False)
         self._key = 0
@@ -64,6 +64,7 @@ class LiveHair:
     def show(self, scene: LiveScene, compared: Mapping[Side, LiveScene] = MappingProxyType({})) -> None:
         """Goes on with other scenes, if hair moves live."""
         self._scene, self._compared = scene, compared
+        self._changed.set()
 
     def hold(self, message: protocol.HoldHead | protocol.TouchHair) -> None:
         """A hand holds the head in a pose, touches the hair, or lets go."""
@@ -104,6 +105,7 @@ class LiveHair:
         if self._thread is None:
             return
         self._stopping.set()
+        self._changed.set()
         if patience > 0.0:
             self._thread.join(patience)
         self._thread = None
@@ -163,6 +165,7 @@ class LiveHair:
                 stopping.wait(LOOK_AGAIN)
                 due = time.monotonic()
                 continue
+            self._changed.clear()
             if self._scene is not None and mover.change(self._scene):
                 key = self._send_rods(mover, stopping)
             if mover.contact != contact:
@@ -170,6 +173,8 @@ class LiveHair:
                 self._call(self._knows_contact, stopping, contact)
             for side, rods in followers.change(self._compared, mover, self._new_key):
                 self._call(self._announce, stopping, rods, side)
+            if self._changed.wait(max(0.0, due - time.monotonic())):
+                continue  # what has changed is taken over before the step is due
             note = mover.step(hand, (1 + late) * dt)
             if not stopping.is_set():
                 message = step_message(key, step, mover, note)
@@ -180,7 +185,6 @@ class LiveHair:
                     self._publisher.send(f"live/{side}/step", message)
             late = max(0, math.floor((time.monotonic() - due) / dt))  # steps to leave out, so that time goes on
             step, due = step + 1 + late, due + (1 + late) * dt
-            stopping.wait(max(0.0, due - time.monotonic()))
 
     def _no_clip(self, why: str) -> None:
         """The clip cannot be read: it does not play."""
