@@ -83,7 +83,7 @@ from .data.reads import recorded as recorded
 from .data.stage import StageSpace as StageSpace
 from .farm import compare_wedge as compare_wedge
 from .farm import wedge as wedge
-from .farm import write_shot_template as write_shot_template
+from .farm import write_shot_job as write_shot_job
 from .farm import write_wedge_template as write_wedge_template
 from .groom.stages import Memory as Memory
 from .host import serve as serve

@@ -887,6 +887,8 @@ MORE = [
         line(f"{PLAN} --set collider[1].friction=0.1")), line(f"{PLAN} --set collider[0].friction=0.1")),
     Advice("must end in .json, such as wedge.template.json",
         line(f"wedge {SHOT} --openjd plan.txt --set solver.newton=1"), line(f"{PLAN} --set solver.newton=1")),
+    Advice("must end in .json for Open Job Description, .alf for Tractor or",
+        line(f"farm {SHOT} --camera /cam -o plan.txt"), line(f"farm {SHOT} --camera /cam -o plan.alf")),
     Advice("was made from other locks ({}, the groom has {}); {}", in_order(added(SHOT,
         '\n[rest]\nmode = "lofted"\n'), line(f"loft {SHOT} --groom groom.usdc"), changed(RECIPE, ("count = 8",
         "count = 9")), line(f"sim {SHOT} -o out.usdc")), in_order(line(f"loft {SHOT}"),

@@ -14,7 +14,21 @@ from ringlet.cli.progress import shown_progress
 
 import ringlet
 
-COMMANDS = ["demo", "groom", "edit", "check", "loft", "sim", "wedge", "hair", "render", "validate", "bench", "schema"]
+COMMANDS = [
+    "demo",
+    "groom",
+    "edit",
+    "check",
+    "loft",
+    "sim",
+    "wedge",
+    "farm",
+    "hair",
+    "render",
+    "validate",
+    "bench",
+    "schema",
+]
 
 
 @pytest.mark.parametrize("command", COMMANDS)

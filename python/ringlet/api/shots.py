@@ -11,7 +11,7 @@ from typing import Any
 from ringlet import io, rest, sim
 from ringlet import shot as shots
 from ringlet.api.caches import is_still, scalp_clip
-from ringlet.api.grooms import load_groom
+from ringlet.api.grooms import load_groom, read_recipe
 from ringlet.api.progress import OnFrame, Progress
 from ringlet.data.cache import Cache, SimulationRecord
 from ringlet.data.curves import Curves
@@ -19,7 +19,7 @@ from ringlet.data.digest import digest
 from ringlet.data.errors import UserError
 from ringlet.data.files import check_place, same_place, within
 from ringlet.data.groom import Groom
-from ringlet.data.reads import recorded, unrecorded
+from ringlet.data.reads import record, recorded, unrecorded
 from ringlet.data.settings import read_toml
 from ringlet.data.toml import merged, tables_of, to_toml
 from ringlet.deform.orientation import outward
@@ -38,6 +38,26 @@ def read_shot(path: Path | str, settings: Mapping[str, Any] | None = None) -> Sh
         return shots.read_shot(path)
     _, tables = read_toml(path, "shot")
     return shots.parse_shot(to_toml(merged(tables, tables_of(settings))), path)
+
+
+def input_files(shot: Path | str, groom: Path | str | None = None) -> list[Path]:
+    """All files that a shot is made of, its own first: grooms, heads, meshes and pictures, layers of USD included.
+
+    groom: a recipe or a groom in place of the shot's
+    """
+    with recorded() as read:
+        settings = read_shot(shot)
+        files = settings.named_files()
+        files.pop("rest.file", None)  # it is made on the way
+        files["groom"] = Path(groom or files["groom"])
+        if files["groom"].suffix == ".toml":
+            files |= read_recipe(files["groom"]).named_files()
+        for file in files.values():
+            if file.suffix in io.USD_SUFFIXES:
+                io.read_space(file)  # which records the layers
+            else:
+                record(file)
+    return read.files()
 
 
 def simulate(

@@ -31,6 +31,7 @@ COMMANDS = [
     "sim",
     "converge",
     "wedge",
+    "farm",
     "hair",
     "convert",
     "adopt",

@@ -24,7 +24,7 @@ from ringlet.cli.options import (
     usd_file,
     usd_output,
 )
-from ringlet.cli.output import print_json, wrote
+from ringlet.cli.output import wrote
 from ringlet.cli.progress import shown_progress
 
 
@@ -59,16 +59,6 @@ def sim(
             show_default=False,
         ),
     ] = None,
-    openjd: Annotated[
-        Path | None,
-        typer.Option(
-            "--openjd",
-            metavar="FILE",
-            help="Only write the whole shot, from its groom to its pictures, as an Open Job Description template for a "
-            "render farm.",
-            show_default=False,
-        ),
-    ] = None,
     report: Report = None,
     as_json: Json = False,
     threads: Threads = None,
@@ -81,9 +71,6 @@ def sim(
 
     Examples: ringlet sim nod.shot.toml -o cache.usdc --frames 1:24 · ringlet sim nod.shot.toml --groom groom.usdc
     """
-    if openjd is not None:
-        write_job(openjd, shot, groom, output.absolute().parent, as_json)
-        return
     said: list[str] = []  # warnings that were printed already
     with ringlet.Run("sim", report) as run, shown_progress() as progress:
         settings = ringlet.read_shot(shot)
@@ -139,17 +126,6 @@ def sim(
     start = {name: found for name, found in record.start.items() if name != "marks"}  # these are for pictures
     more = {name: value for name, value in (("start", start), ("notes", record.notes)) if value}
     wrote(output, run.counts, as_json, verdict=verdict.json(), slowest=run.slowest, **more)
-
-
-def write_job(path: Path, shot: Path, groom: Path | None, folder: Path, as_json: bool) -> None:
-    """Writes a shot as a template for render farms, and prints how to try it."""
-    steps = ringlet.write_shot_template(path, shot)
-    groom = (groom or ringlet.read_shot(shot).groom).absolute()
-    run = f"openjd run {path} -p Shot={shot.absolute()} -p Groom={groom} -p Folder={folder} -p Camera=/PRIM"
-    if as_json:
-        print_json({"path": str(path), "steps": steps})
-    else:
-        print(f"{path}: {', '.join(steps)}. Try it here: {run}")
 
 
 def _warn(run: ringlet.Run, said: list[str], sentence: str) -> None:

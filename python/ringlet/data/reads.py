@@ -37,12 +37,15 @@ class Reads:
             found += [_named(first), *sorted(map(_named, others))]
         return found
 
+    def files(self) -> list[Path]:
+        """The files that were read, in order, each once and without symbolic links."""
+        return list(dict.fromkeys(file for files in self._reads for file in files if file not in self._written))
+
     def input_at(self, path: Path | str) -> Path | None:
         """The file that was read and is at a path, through links too; None for a file that the block wrote itself."""
         if not Path(path).exists():
             return None
-        files = dict.fromkeys(file for files in self._reads for file in files if file not in self._written)
-        return next((file for file in files if same_file(path, file)), None)
+        return next((file for file in self.files() if same_file(path, file)), None)
 
 
 @contextmanager

@@ -1,7 +1,8 @@
-"""Jobs of Open Job Description, for render farms, and a wedge as one.
+"""Jobs and wedges as templates of Open Job Description, for render farms.
 
-Specification: https://github.com/OpenJobDescription/openjd-specifications/wiki. The first step of a wedge has one task
-for each combination of settings; the second writes the page that compares them.
+Specification: https://github.com/OpenJobDescription/openjd-specifications/wiki. Files of a job are parameters that
+farms map and bring to their machines. The first step of a wedge has one task for each combination of settings; the
+second writes the page that compares them.
 """
 
 from __future__ import annotations
@@ -17,9 +18,12 @@ from ringlet.data.files import replacing
 from ringlet.data.names import distinct, identifier
 from ringlet.data.toml import to_toml
 from ringlet.farm.grid import Choice
+from ringlet.farm.job import FRAME, HOUR, Job, Step
 from ringlet.farm.task import TaskOptions
 
 VERSION = "jobtemplate-2023-09"
+PROGRESS = {"RINGLET_PROGRESS": "openjd"}  # tells the command to print its progress as farms read it
+MEMORY = 2048  # of each processor [MiB]
 MAX_NAME = 64  # characters of the name of a parameter, a job or a step
 
 
@@ -28,13 +32,69 @@ def write_template(path: Path, shot: Path, choices: Sequence[Choice], options: T
 
     Raises UserError for a path that does not end in .json.
     """
-    write_job(path, template(shot, choices, options))
-
-
-def write_job(path: Path, job: dict[str, Any]) -> None:
-    """Writes a job template as JSON. Raises UserError for a path that does not end in .json."""
     if path.suffix != ".json":
         raise UserError(f"{path}: ends in '{path.suffix}'; must end in .json, such as wedge.template.json")
+    _write(path, template(shot, choices, options))
+
+
+def write_openjd(path: Path, job: Job) -> None:
+    """Writes a job as JSON. Parameters are its files with what they have to do with it, its values and its frames."""
+    files = [
+        {
+            "name": name,
+            "type": "PATH",
+            "objectType": "DIRECTORY" if file.folder else "FILE",
+            "dataFlow": "OUT" if job.is_made(name) else "IN",
+            "default": _default(file.path, path.absolute().parent),
+            "description": file.about,
+        }
+        for name, file in job.files.items()
+    ]
+    values = [
+        {"name": name, "type": "INT" if isinstance(value, int) else "STRING", "default": value}
+        for name, value in job.values.items()
+    ]
+    first, last = job.frames
+    frames = {"name": "Frames", "type": "STRING", "default": f"{first}-{last}", "description": "Such as 1-24 or 1-24:2"}
+    steps: list[dict[str, Any]] = []
+    for step in job.steps:
+        after = {"dependencies": [{"dependsOn": steps[-1]["name"]}]} if steps else {}
+        steps.append({**_step(step, job), **after})
+    environment = {"name": "Progress", "variables": PROGRESS}
+    _write(path, _template(job.title, [*files, *values, frames], steps) | {"jobEnvironments": [environment]})
+
+
+def _default(file: Path, folder: Path) -> str:
+    """A path as the default of a parameter: relative to the folder of the template where it is in it, else absolute."""
+    return (file.relative_to(folder) if file.is_relative_to(folder) else file).as_posix()
+
+
+def _step(step: Step, job: Job) -> dict[str, Any]:
+    texts = {name: f"{{{{Param.{name}}}}}" for name in (*job.files, *job.values)}
+    words = step.command({**texts, FRAME: f"{{{{Task.Param.{FRAME}}}}}"})
+    amounts = {"amount.worker.vcpu": step.processors, "amount.worker.memory": MEMORY * step.processors}
+    frame = {"name": FRAME, "type": "INT", "range": "{{Param.Frames}}"}
+    return {
+        "name": step.name,
+        "description": f"Reads {', '.join(step.reads)}. Writes {', '.join(step.writes)}.",
+        "hostRequirements": {"amounts": [{"name": name, "min": least} for name, least in amounts.items()]},
+        "script": script(words, timeout=step.hours * HOUR),
+        **({"parameterSpace": {"taskParameterDefinitions": [frame]}} if step.by_frame else {}),
+    }
+
+
+def _template(title: str, parameters: list[dict[str, Any]], steps: list[dict[str, Any]]) -> dict[str, Any]:
+    """A template, with the command ringlet as the last parameter."""
+    ringlet = {"name": "Ringlet", "type": "STRING", "description": "The command ringlet", "default": "ringlet"}
+    return {
+        "specificationVersion": VERSION,
+        "name": title[:MAX_NAME],
+        "parameterDefinitions": [*parameters, ringlet],
+        "steps": steps,
+    }
+
+
+def _write(path: Path, job: dict[str, Any]) -> None:
     with replacing(path) as aside:
         aside.write_text(json.dumps(job, indent=2) + "\n", encoding="utf-8")
 
@@ -60,32 +120,16 @@ def template(shot: Path, choices: Sequence[Choice], options: TaskOptions) -> dic
         "dependencies": [{"dependsOn": "Simulate"}],
         "script": script(["wedge", *shot_and_folder, "--compare"]),
     }
-    return job(shot, [path_parameter("Folder", "DIRECTORY", "OUT", "Where the results go")], [simulate, compare])
-
-
-def job(shot: Path, parameters: list[dict[str, Any]], steps: list[dict[str, Any]], **more: Any) -> dict[str, Any]:
-    """The template of a job about a shot, with the shot and the command ringlet as its first parameters."""
-    own = [
+    parameters = [
         path_parameter("Shot", "FILE", "INOUT", "The shot; what it names must be where it says"),
-        value_parameter("Ringlet", "STRING", "The command ringlet", default="ringlet"),
+        path_parameter("Folder", "DIRECTORY", "OUT", "Where the results go"),
     ]
-    return {
-        "specificationVersion": VERSION,
-        "name": f"Ringlet: {shot.name}"[:MAX_NAME],
-        "parameterDefinitions": own + parameters,
-        **more,
-        "steps": steps,
-    }
+    return _template(f"Ringlet: {shot.name}", parameters, [simulate, compare])
 
 
 def script(words: list[str], **more: Any) -> dict[str, Any]:
     """What a task runs: ringlet with words of the command line; ``more`` such as a timeout [s]."""
     return {"actions": {"onRun": {"command": "{{Param.Ringlet}}", "args": words, **more}}}
-
-
-def value_parameter(name: str, kind: str, about: str, **more: Any) -> dict[str, Any]:
-    """The definition of a parameter that is no path, with its default and its bounds."""
-    return {"name": name, "type": kind, "description": about, **more}
 
 
 def path_parameter(name: str, kind: str, flow: str, about: str) -> dict[str, str]:

@@ -1,76 +1,134 @@
-"""A whole shot as a job of Open Job Description, for render farms: groom, rest shapes, simulation, hairs and pictures.
+"""A whole shot as a job for render farms: groom, rest shapes, simulation, hairs and pictures.
 
-Each is a step, which runs when those before it are done; pictures have a task for each frame. A step that runs again
-goes on: a simulation from its checkpoints, on any machine that sees the folder. Specification: as for ``openjd``.
+A step that runs again goes on: a simulation from its checkpoints, on any machine that sees the folder.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
-from ringlet.api.shots import read_shot
-from ringlet.farm.openjd import job, path_parameter, script, value_parameter, write_job
-from ringlet.shot import Shot
+from ringlet.api.shots import input_files, read_shot
+from ringlet.data.errors import UserError
+from ringlet.data.files import check_place
+from ringlet.data.names import distinct
+from ringlet.data.reads import recorded
+from ringlet.farm.deadline import write_deadline
+from ringlet.farm.job import File, Job, Step
+from ringlet.farm.openjd import write_openjd
+from ringlet.farm.tractor import write_tractor
 
-FOLDER = "{{Param.Folder}}"
-GROOM, CACHE, HAIR = (f"{FOLDER}/{name}.usdc" for name in ("groom", "cache", "hair"))
-HOUR = 3600  # [s]
-PROGRESS = {"RINGLET_PROGRESS": "openjd"}  # tells the command to print its progress as farms read it
+FARMS: dict[str, Callable[[Path, Job], None]] = {
+    ".json": write_openjd,
+    ".alf": write_tractor,
+    ".deadline": write_deadline,
+}
 
 
-def write_shot_template(path: Path | str, shot: Path | str) -> list[str]:
-    """Writes a shot as a template of Open Job Description, as JSON; returns the names of its steps.
+@recorded()
+def write_shot_job(
+    path: Path | str,
+    shot: Path | str,
+    *,
+    folder: Path | str,
+    camera: str,
+    groom: Path | str | None = None,
+    frames: tuple[int, int] | None = None,
+    width: int = 1280,
+    samples: int = 40,
+    exr: bool = False,
+) -> list[str]:
+    """Writes a shot, from its groom to its pictures, as a job for a render farm; returns the names of its steps.
 
-    Raises UserError for a path that does not end in .json, and for a shot that is not valid.
+    path:    ``.json``, a template of Open Job Description; ``.alf``, a job of Tractor; or ``.deadline``, a folder of
+             jobs for Deadline
+    folder:  where groom, cache, hairs and pictures go
+    camera:  of the pictures, a prim of the stage of the hairs
+    groom:   a recipe or a groom in place of the shot's
+    frames:  first and last frame of hairs and pictures; by default those of the shot
+    width:   pixels across
+    samples: light paths of a pixel
+    exr:     writes pictures as EXR with all layers, in place of PNG
+
+    Raises UserError for another suffix, and for a shot that is not valid.
     """
-    made = template(read_shot(Path(shot)))
-    write_job(Path(path), made)
-    return [step["name"] for step in made["steps"]]
+    path = Path(path)
+    if path.suffix not in FARMS:
+        raise UserError(
+            f"{path}: ends in '{path.suffix}'; must end in .json for Open Job Description, .alf for Tractor or "
+            ".deadline for Deadline"
+        )
+    check_place(path)
+    values: dict[str, str | int] = {"Camera": camera, "Width": width, "Samples": samples}
+    given = None if groom is None else Path(groom)
+    job = shot_job(Path(shot), given, Path(folder).absolute(), frames, values, "exr" if exr else "png")
+    FARMS[path.suffix](path, job)
+    return [step.name for step in job.steps]
 
 
-def template(shot: Shot) -> dict[str, Any]:
-    """The job template as plain values."""
-    assert shot.path is not None
-    made = shot.groom.suffix == ".toml"
-    groom = GROOM if made else "{{Param.Groom}}"
-    steps: list[dict[str, Any]] = []
+def shot_job(
+    path: Path,
+    given: Path | None,
+    folder: Path,
+    frames: tuple[int, int] | None,
+    values: dict[str, str | int],
+    suffix: str,
+) -> Job:
+    """The job of a shot.
 
-    def add(name: str, words: list[str], hours: int, **more: Any) -> None:
-        step = {"name": name, "script": script(words, timeout=hours * HOUR), **more}
-        if steps:
-            step["dependencies"] = [{"dependsOn": steps[-1]["name"]}]
-        steps.append(step)
-
-    if made:
-        add("Groom", ["groom", "{{Param.Groom}}", "-o", groom], 2)
+    given:  a recipe or a groom in place of the shot's
+    values: ``Camera``, ``Width`` and ``Samples`` of the pictures
+    suffix: of the pictures
+    """
+    shot = read_shot(path)
+    source = given or shot.groom
+    files = {
+        "Shot": File(path.absolute(), "The shot"),
+        "Groom": File(source.absolute(), "The groom"),
+        "Cache": File(folder / "cache.usdc", "The simulation of the locks"),
+        "Hair": File(folder / "hair.usdc", "All hairs on demand, over the simulation"),
+        "Points": File(folder / "points", "Hairs with points, a file for each frame", folder=True),
+        "Pictures": File(folder / "pictures", "Pictures, one for each frame", folder=True),
+    }
+    steps: list[Step] = []
+    if source.suffix == ".toml":
+        files["Recipe"] = File(source.absolute(), "The recipe of the groom")
+        files["Groom"] = File(folder / "groom.usdc", "The groom")
+        steps.append(Step("Groom", ["groom", "{Recipe}", "-o", "{Groom}"], ["Recipe"], ["Groom"], 2))
+    further = [file for file in input_files(path, source) if file not in (path.resolve(), source.resolve())]
+    names = distinct([file.name for file in further])
+    files |= {name: File(file, "Read with them") for name, file in zip(names, further, strict=True)}
+    locks = ["Shot", "Groom", *names]
     if shot.rest.mode != "none":
-        add("Rest", ["loft", "{{Param.Shot}}", "--groom", groom], 24, **needs(4))
-    simulate = ["sim", "{{Param.Shot}}", "--groom", groom, "-o", CACHE, "--resume"]
-    add("Simulate", simulate, 7 * 24, **needs(8))
-    add("Hair", ["hair", groom, "--cache", CACHE, "-o", HAIR, "--fraction", "{{Param.Fraction}}"], 24, **needs(4))
-    frame = {"name": "Frame", "type": "INT", "range": "{{Param.Frames}}"}
-    picture = f"{FOLDER}/frames/{{{{Task.Param.Frame}}}}.{{{{Param.Format}}}}"
-    render = ["render", HAIR, "--frame", "{{Task.Param.Frame}}", "-o", picture, "--camera", "{{Param.Camera}}"]
-    render += ["--width", "{{Param.Width}}", "--samples", "{{Param.Samples}}"]
-    add("Render", render, 12, parameterSpace={"taskParameterDefinitions": [frame]}, **needs(4))
-    first, last = shot.frames
-    parameters = [
-        path_parameter("Groom", "FILE", "IN", "The recipe, or the groom, of the shot"),
-        path_parameter("Folder", "DIRECTORY", "INOUT", "Where groom, cache, hairs and frames go"),
-        value_parameter("Camera", "STRING", "The prim of the camera, among those of the head's file"),
-        value_parameter(
-            "Frames", "STRING", "Frames of the pictures, such as 1-24 or 1-24:2", default=f"{first}-{last}"
-        ),
-        value_parameter("Format", "STRING", "Of the pictures", default="png", allowedValues=["png", "exr"]),
-        value_parameter("Width", "INT", "Pixels across", default=1280, minValue=1),
-        value_parameter("Samples", "INT", "Light paths of a pixel", default=40, minValue=1),
-        value_parameter("Fraction", "FLOAT", "Of the hairs to make", default=1.0, minValue=0.001, maxValue=1.0),
+        assert shot.rest_file is not None
+        files["Rest"] = File(shot.rest_file.absolute(), "The rest shapes")
+        steps.append(Step("Rest", ["loft", "{Shot}", "--groom", "{Groom}"], locks, ["Rest"], 24, 4))
+        locks = [*locks, "Rest"]
+    simulate = ["sim", "{Shot}", "--groom", "{Groom}", "-o", "{Cache}", "--resume"]
+    hair = ["hair", "{Groom}", "--cache", "{Cache}", "-o", "{Hair}", "--on-demand"]
+    points = ["hair", "{Hair}", "-o", "{Points}/{Frame}.usdc", "--frames", "{Frame}"]
+    render = [
+        "render",
+        "{Hair}",
+        "-o",
+        f"{{Pictures}}/{{Frame}}.{suffix}",
+        "--frame",
+        "{Frame}",
+        "--camera",
+        "{Camera}",
     ]
-    return job(shot.path, parameters, steps, jobEnvironments=[{"name": "Progress", "variables": PROGRESS}])
-
-
-def needs(processors: int) -> dict[str, Any]:
-    """A host with at least so many processors, and 2 GiB of memory for each."""
-    amounts = {"amount.worker.vcpu": processors, "amount.worker.memory": 2048 * processors}
-    return {"hostRequirements": {"amounts": [{"name": name, "min": least} for name, least in amounts.items()]}}
+    render += ["--width", "{Width}", "--samples", "{Samples}"]
+    seen = ["Hair", "Cache", "Groom", *names]
+    return Job(
+        f"Ringlet: {path.name}",
+        files,
+        values,
+        frames or shot.frames,
+        [
+            *steps,
+            Step("Simulate", simulate, locks, ["Cache"], 7 * 24, 8),
+            Step("Hair", hair, ["Cache", "Groom", *names], ["Hair"], 24, 4),
+            Step("Points", points, seen, ["Points"], 2, 4, by_frame=True),
+            Step("Render", render, seen, ["Pictures"], 12, 4, by_frame=True),
+        ],
+    )

@@ -22,10 +22,12 @@ from ringlet.io.usd.on_demand import (
     read_on_demand,
 )
 from ringlet.io.usd.rest import read_rest, write_rest
+from ringlet.io.usd.stage import SUFFIXES as USD_SUFFIXES
 from ringlet.io.usd.stage import check_target
 from ringlet.io.usd.touches import heat, read_touches, start_marks, write_touches
 
 __all__ = [
+    "USD_SUFFIXES",
     "Body",
     "CacheFile",
     "CacheWriter",
