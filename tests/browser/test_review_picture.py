@@ -239,3 +239,24 @@ def test_hairs_that_move_between_two_slices_are_all_brought_to_their_places(open
         })()"""
     )
     assert slices > 2 and stale == 0 and not review.errors
+
+
+def test_hairs_that_the_card_does_not_hold_are_stood_for_by_those_that_it_does(opened: Any, folder: Path):
+    recipe = folder / "small.recipe.toml"
+    recipe.write_text(recipe.read_text().replace("per_lock = 3", "per_lock = 400"))
+    review: Review = opened(pixels=0.1)
+    review.picture()
+    held, whole, thicker = review.get(
+        """(() => {
+          const { renderer, painter: { slices }, hair: { a: hair } } = ringlet.viewer, { hairs } = hair.carry;
+          const before = Array.from(hair.read(renderer, hair.count));
+          hair.most = 1;
+          hair.setHairs(hairs);
+          const after = Array.from(hair.read(renderer, hairs.count));
+          for (const _ of hair.draw(1, 1, 0, slices, () => {}));
+          const same = after.every((value, k) => value === before[k]) && after.length === 4 * hair.count * hairs.points;
+          const { thicken } = hair.material.uniforms;
+          return [hair.count === Math.floor(2048 / hairs.points), same, (thicken.value * hair.count) / hairs.count];
+        })()"""
+    )
+    assert (held, whole, thicker) == (True, True, pytest.approx(1.0)) and not review.errors

@@ -34,6 +34,7 @@ export class Status {
     if (drawMs !== undefined) this.set("draw", `${drawMs.toFixed(0)} ms`);
     const hairs = this.model.numbers?.hairs ?? 0;
     if (hairs) this.set("hairs", shown < hairs ? `${count(shown)} of ${count(hairs)}` : count(hairs));
+    this.parts["hairs"].title = shown < hairs ? "So many stand for all, as long as the picture gets finer, or where the card holds no more" : "";
   }
 
   /** Statistics of the simulation of the frame that is shown. */

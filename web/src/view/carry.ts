@@ -165,17 +165,24 @@ export class Carry {
   private roots: Float32Array | null = null;
   /** Rows of the target that are up to date. */
   private carried = 0;
+  /** Number of the hairs that the card holds: the first ones, which stand for all. */
+  readonly count: number;
 
-  constructor(readonly hairs: Hairs) {
-    this.left = new Shares(hairs.count * hairs.points);
-    this.target = target(hairs.count * hairs.points);
+  /** most: rows that a texture of the card has at most */
+  constructor(
+    readonly hairs: Hairs,
+    most: number,
+  ) {
+    this.count = Math.min(hairs.count, Math.floor((most * WIDTH) / hairs.points));
+    this.left = new Shares(this.count * hairs.points);
+    this.target = target(this.count * hairs.points);
     this.material = new RawShaderMaterial({
       glslVersion: GLSL3,
       vertexShader: VERTEX,
       fragmentShader: FRAGMENT,
       depthTest: false,
       uniforms: {
-        hairs: { value: hairs.count },
+        hairs: { value: this.count },
         points: { value: hairs.points },
         knots: { value: hairs.knots },
         left: { value: this.left.texture },
@@ -307,7 +314,7 @@ export class Carry {
     const rows = Math.min(this.target.height, Math.ceil((hairs * this.hairs.points) / WIDTH));
     const values = new Float32Array(4 * WIDTH * rows);
     renderer.readRenderTargetPixels(this.target, 0, 0, WIDTH, rows, values);
-    return values.subarray(0, 4 * Math.min(hairs, this.hairs.count) * this.hairs.points);
+    return values.subarray(0, 4 * Math.min(hairs, this.count) * this.hairs.points);
   }
 
   dispose(): void {

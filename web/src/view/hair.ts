@@ -94,10 +94,12 @@ export class Hair {
   /**
    * deferred: whether hairs are shaded once it is known which are seen. A processor shades hidden ones too otherwise; a
    * card does not, and its several samples of a pixel want hairs that are shaded on their own.
+   * most: rows that a texture of the card has at most
    */
   constructor(
     private readonly lights: Lights,
     deferred: boolean,
+    private readonly most: number,
   ) {
     this.shared = {
       hairPoints: { value: null },
@@ -148,7 +150,12 @@ export class Hair {
     this.scene.add(shaded);
   }
 
+  /** Number of the hairs that the card holds, which stand for all. */
   get count(): number {
+    return this.carry?.count ?? 0;
+  }
+
+  private get all(): number {
     return this.carry?.hairs.count ?? 0;
   }
 
@@ -161,10 +168,10 @@ export class Hair {
 
   setHairs(hairs: Hairs): void {
     this.carry?.dispose();
-    this.carry = new Carry(hairs);
+    this.carry = new Carry(hairs, this.most);
     this.lighting = null;
     this.shared["points"].value = hairs.points;
-    this.material.uniforms["hairs"].value = hairs.count;
+    this.material.uniforms["hairs"].value = this.count;
     this.setStride(this.stride, true);
     this.recolour();
     if (this.locks) this.place(this.locks);
@@ -292,7 +299,7 @@ export class Hair {
 
   private recolour(): void {
     const { own, named } = this;
-    const fits = own !== null && own.reflectance.length === 3 * own.stations * this.count;
+    const fits = own !== null && own.reflectance.length === 3 * own.stations * this.all;
     const shown = this.ownShown && own !== null && own.stations > 0 && fits;
     this.shared["stations"].value = shown ? own.stations : 0;
     if (named) (this.shared["tone"].value as Vector3).fromArray(named.slice(0, 3).map((c) => c ** 0.25));
@@ -355,7 +362,7 @@ export class Hair {
     const begin = Math.round(number * fraction * this.count) % Math.max(this.count, 1);
     yield* slices.draw("hairs", this.drawn(fraction), (first, count) => {
       const { uniforms } = this.material;
-      uniforms["thicken"].value = this.count / this.drawn(fraction);
+      uniforms["thicken"].value = this.all / this.drawn(fraction);
       uniforms["firstHair"].value = begin + first;
       this.setStride(stride, false);
       this.geometry.instanceCount = count;
@@ -402,8 +409,8 @@ export class Hair {
     if (this.filled !== revision) {
       const grid = Grid.of(this.reach);
       const bodies = surfaces();
-      yield* this.update(renderer, this.density.measured(this.count) / this.count, 1, slices);
-      const hair = yield* this.density.measure(renderer, grid, this.count, slices);
+      yield* this.update(renderer, this.density.measured(this.all) / this.count, 1, slices);
+      const hair = yield* this.density.measure(renderer, grid, this.all, slices);
       const skin = yield* slices.compute(shell(grid, bodies));
       this.volume.fill({ grid, ...hair, ...skin });
       this.filled = revision;

@@ -23,12 +23,13 @@ export class Stage {
   /** Whether the hair is shown; its guides are seen without it. */
   hairShown = true;
 
-  /** changed: hears that the picture is another; deferred: see `Hair` */
+  /** changed: hears that the picture is another; deferred, most: see `Hair` */
   constructor(
     private readonly changed: () => void,
     deferred: boolean,
+    most: number,
   ) {
-    const hair = () => new Hair(this.lights, deferred);
+    const hair = () => new Hair(this.lights, deferred, most);
     this.hair = { a: hair(), b: hair(), c: hair(), d: hair() };
   }
 

@@ -86,7 +86,8 @@ export class Viewer {
     const context = contextOf(canvas);
     const software = !context || drawsInSoftware(context);
     this.pace = new Pace(software);
-    this.stage = new Stage(() => this.invalidate(), software);
+    const most: number = context?.getParameter(context.MAX_TEXTURE_SIZE) ?? Infinity;
+    this.stage = new Stage(() => this.invalidate(), software, most);
     this.hair = this.stage.hair;
     this.guides = this.stage.guides;
     this.painted = this.stage.painted;
