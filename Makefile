@@ -8,7 +8,7 @@ python := .venv/bin/python
 # uv takes a fifth of the time of pip. It reads settings of its own: see docs/install.md.
 install := .venv/bin/uv pip install --quiet --python $(python)
 # Names of functions are kept for those who count and profile.
-editable := $(install) --no-build-isolation --config-settings=install.strip=false --editable .
+editable := $(install) --no-build-isolation --config-settings=install.strip=false --editable '.[pictures,review]'
 
 # What the compiled part of the package is made from, and which packages there are; editing Python needs no new build.
 sources := pyproject.toml CMakeLists.txt $(wildcard cmake/* python/ringlet/*/__init__.py) $(shell find src bindings -type f)

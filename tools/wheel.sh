@@ -16,4 +16,6 @@ wheel=$(ls -t dist/ringlet-*.whl | head -1)
 "$work/venv/bin/python" -m pip install --quiet "$wheel"
 echo "installed $wheel"
 cd "$work"
-PATH=$work/venv/bin:$PATH bash "$OLDPWD/tools/try_wheel.sh"
+PATH=$work/venv/bin:$PATH bash "$OLDPWD/tools/try_wheel.sh" # without extras
+"$work/venv/bin/python" -m pip install --quiet "$OLDPWD/$wheel[pictures,review]"
+"$work/venv/bin/ringlet" doctor

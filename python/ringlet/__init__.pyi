@@ -101,7 +101,7 @@ from .sim.direct import DirectSolver as DirectSolver
 from .sim.obstacle import Body as Body
 from .sim.scene import Scene as Scene
 from .sim.strands import Strands as Strands
-from .viewer import share as share
-from .viewer import view as view
+from .viewer.keep.share_page import share as share
+from .viewer.run import view as view
 
 __version__: str

@@ -126,6 +126,9 @@ def add_lens(prim: Usd.Prim) -> None:
 
 LENS = f"render other.usdc -o a.png --camera /lens {QUICK}"
 FARM = [
+    Advice("{} is not installed; install it with: pip install 'ringlet[{}]'",
+        patched(line(f"check {RECIPE} --picture a.png"), lambda: patch.dict(sys.modules, matplotlib=None)),
+        line(f"check {RECIPE} --picture a.png")),
     Advice("wedge: dask.distributed is not installed",
         patched(line(f"wedge {SHOT} -o w --set solver.newton=1"), lambda: patch.dict(sys.modules, distributed=None)),
         line(f"{WEDGE} --set solver.newton=1")),

@@ -154,7 +154,7 @@ def test_what_does_not_move_has_no_motion_blur(pipeline, tmp_path):
 
 def test_a_denoiser_that_is_not_installed_is_refused(monkeypatch, tmp_path):
     monkeypatch.setitem(sys.modules, "pyoidn", None)
-    with pytest.raises(UserError, match="pip install pyoidn"):
+    with pytest.raises(UserError, match="pyoidn; install it"):
         still(Pose([board()], Curves.from_list([])), tmp_path / "a.png", replace(QUICK, denoiser="oidn"))
 
 

@@ -13,6 +13,8 @@ import bpy
 
 from .refused import Refused
 
+EXTRAS = "pictures,review"  # what the buttons need beyond grooms and simulations
+
 
 def command() -> list[str] | None:
     """Ringlet's command: that of the preferences, the one that the extension installed, or the one on the PATH."""
@@ -68,7 +70,7 @@ class Installation:
         if wheel is None and not bpy.app.online_access:
             raise Refused("Online access is off; choose a wheel, or allow it in Preferences > System > Network")
         folder, python = environment(), preference("python") or sys.executable
-        words = [str(wheel), "--find-links", str(wheel.parent)] if wheel else [source]
+        words = [f"{wheel or source}[{EXTRAS}]", *(["--find-links", str(wheel.parent)] if wheel else [])]
         if not bpy.app.online_access:
             words.append("--no-index")
         self._thread = threading.Thread(target=self._run, args=(folder, python, words), daemon=True)

@@ -11,6 +11,7 @@ from ringlet import groom as grooms
 from ringlet import io
 from ringlet.api.grooms import load_groom, write_groom
 from ringlet.api.progress import Progress
+from ringlet.data.extras import need
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Mesh
 from ringlet.data.reads import recorded
@@ -45,6 +46,8 @@ def check_groom(
     picture:     where to write a picture of the places: of those that are left, if it is repaired
     variant:     of the groom file, in place of the one that is selected in it
     """
+    if picture is not None:
+        need("matplotlib")
     if not isinstance(groom, Groom):
         groom = load_groom(groom, variant=variant, progress=progress)
     allowed = grooms.Allowed(root_depth, root_length, thickness, own_radius)

@@ -14,6 +14,7 @@ from ringlet.api.pictures import write_sheet, write_still
 from ringlet.api.progress import Progress
 from ringlet.api.run import Run
 from ringlet.api.shots import loft, read_shot, write_loft, write_simulation
+from ringlet.data.extras import need
 from ringlet.data.share import share
 from ringlet.shot import Shot
 
@@ -35,6 +36,7 @@ def run_demo(
 
     show: called with the still as soon as it is there
     """
+    need("mitsuba")
     folder = Path(folder)
     example = share("examples/child")
     groom_file, cache_file, hair_file = folder / "groom.usdc", folder / "cache.usdc", folder / "hair.usdc"

@@ -11,6 +11,7 @@ import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from importlib.metadata import PackageNotFoundError, requires, version
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -50,11 +51,14 @@ def diagnose(*, self_test: bool = True, progress: Progress | None = None) -> lis
         _processor,
         _memory,
         *(_package(name) for name in _needed()),
+        _mitsuba,
+        _oidn,
+        _matplotlib,
+        _server,
         _pardiso,
         _dask,
         _openjd,
         _alembic,
-        _oidn,
         _ffmpeg,
         _page,
     ]
@@ -131,7 +135,10 @@ def _optional(package: str, title: str, use: str) -> Callable[[], Finding]:
 _dask = _optional("distributed", "dask.distributed", "for wedges: pip install 'ringlet[farm]'")
 _openjd = _optional("openjd-cli", "Open Job Description", "to run templates: pip install 'ringlet[farm]'")
 _alembic = _optional("alembic3d", "Alembic", "for .abc files: pip install 'ringlet[alembic]'")
-_oidn = _optional("pyoidn", "Open Image Denoise", "for pictures without noise: pip install pyoidn")
+_mitsuba = _optional("mitsuba", "Mitsuba", "for pictures: pip install 'ringlet[pictures]'")
+_oidn = _optional("pyoidn", "Open Image Denoise", "for pictures without noise: pip install 'ringlet[pictures]'")
+_matplotlib = _optional("matplotlib", "Matplotlib", "for charts: pip install 'ringlet[pictures]'")
+_server = _optional("uvicorn", "server of the review", "for ringlet view: pip install 'ringlet[review]'")
 _ffmpeg = _optional("imageio-ffmpeg", "imageio-ffmpeg", "for videos: pip install 'ringlet[movie]'")
 
 
@@ -196,7 +203,9 @@ def _test_files(folder: Path) -> Finding:
 
 
 def _test_picture(folder: Path) -> Finding:
-    """A small picture of that groom."""
+    """A small picture of that groom, where Mitsuba is installed."""
+    if find_spec("mitsuba") is None:
+        return Finding("picture", "optional", "not drawn")
     start = time.perf_counter()
     ringlet.write_hairs(folder / "groom.usdc", folder / "hair.usdc", fraction=0.01)
     path = folder / "still.png"

@@ -12,6 +12,7 @@ from ringlet.api.progress import Progress
 from ringlet.api.shots import read_shot
 from ringlet.data import limits
 from ringlet.data.errors import UserError
+from ringlet.data.extras import need
 from ringlet.data.files import check_place
 from ringlet.data.reads import record, recorded, refuse_inputs
 from ringlet.farm.cluster import run_on_workers
@@ -56,6 +57,8 @@ def wedge(
     for what, count, most in (("workers", workers, limits.WORKERS), ("threads", threads, limits.THREADS)):
         if count is not None:
             limits.check_count(f"wedge: {what}", count, most)
+    if picture and scheduler is None:
+        need("mitsuba")
     folder = Path(folder).absolute()
     tasks = make_tasks(Path(shot).absolute(), _choices(settings), folder)
     record(*read_shot(shot).named_files().values())

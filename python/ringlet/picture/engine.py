@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from ringlet.data.errors import UserError
+from ringlet.data.extras import need
 
 VARIANTS = {"scalar": "scalar_rgb", "llvm": "llvm_ad_rgb"}
 OLDEST_LLVM = 17  # older ones cannot compile the maximum of two floats on x86, and end the process
@@ -15,7 +16,8 @@ _engine = "scalar"
 
 
 def mitsuba() -> Any:
-    """Loads Mitsuba in the variant of the engine; lazily, since loading is slow."""
+    """Loads Mitsuba in the variant of the engine; lazily, since loading is slow. Raises UserError without Mitsuba."""
+    need("mitsuba")
     import mitsuba as mi
 
     mi.set_variant(VARIANTS[_engine])

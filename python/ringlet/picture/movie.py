@@ -17,6 +17,7 @@ from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
 from ringlet.data.errors import UserError
+from ringlet.data.extras import need
 from ringlet.data.files import check_place, replacing
 from ringlet.data.picture import PictureSettings
 from ringlet.picture.motion import Pose
@@ -69,6 +70,7 @@ def frames_folder(output: Path) -> Path:
 
 def check_output(output: Path, settings: PictureSettings) -> None:
     """Raises UserError for a movie that cannot be written, before the work for it."""
+    need("mitsuba")
     if output.suffix not in ("", *VIDEOS):
         raise UserError(
             f"{output}: ends in '{output.suffix}'; must end in {' or '.join(VIDEOS)}, or be a folder of frames"

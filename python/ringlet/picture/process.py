@@ -10,11 +10,12 @@ import os
 import pickle
 import signal
 import sys
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
 from ringlet.data.camera import Camera
-from ringlet.data.errors import failure
+from ringlet.data.errors import UserError, failure
 from ringlet.data.picture import PictureSettings
 from ringlet.picture.engine import mitsuba
 from ringlet.picture.motion import Pose
@@ -51,7 +52,8 @@ def serve() -> None:
             pickle.dump(step, steps)
             steps.flush()
 
-        mitsuba()
+        with suppress(UserError):  # without it the task is answered so
+            mitsuba()
         try:
             task: RenderTask = pickle.load(sys.stdin.buffer)
         except EOFError:

@@ -205,7 +205,7 @@ def growing(pose: Pose, camera: Camera, settings: PictureSettings) -> Iterator[t
 def check_denoiser(name: str) -> None:
     """Raises UserError for a denoiser that is not installed."""
     if name == "oidn" and not oidn.available():
-        raise UserError("picture: the denoiser oidn needs pyoidn; install it with: pip install pyoidn")
+        raise UserError("picture: the denoiser oidn needs pyoidn; install it with: pip install 'ringlet[pictures]'")
 
 
 def developed(image: NDArray[np.float32], background: str) -> Image.Image:

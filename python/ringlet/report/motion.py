@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ringlet.data.extras import need
 from ringlet.data.files import replacing
 from ringlet.data.motion import MotionWords, Word
 
@@ -65,6 +66,7 @@ def plain(motion: MotionWords) -> list[dict[str, Any]]:
 
 def write_plot(motion: MotionWords, path: Path, title: str) -> None:
     """Draws the distribution of each word over the locks of each group: a row a group, a panel a word."""
+    need("matplotlib")
     from matplotlib.figure import Figure  # takes half a second, and few need it
 
     groups = list(dict.fromkeys(word.group for word in motion.words))

@@ -9,15 +9,17 @@ import threading
 import webbrowser
 from collections.abc import Callable
 from pathlib import Path
-
-import uvicorn
+from typing import TYPE_CHECKING
 
 from ringlet.data.errors import UserError
+from ringlet.data.extras import need
 from ringlet.data.reads import unrecorded
 from ringlet.viewer.project import Project
-from ringlet.viewer.server import LOOPBACK, STATIC, AccessControl, make_app
 from ringlet.viewer.session import Session
 from ringlet.viewer.wire import MOST
+
+if TYPE_CHECKING:
+    import uvicorn
 
 DEFAULT_PORT = 8642
 
@@ -42,8 +44,14 @@ def view(
     told:    called with a line that has the address
     until:   stops the server when set, for a server in a thread
 
-    Raises UserError for a missing file, an unusable port or host, and a page that was not built.
+    Raises UserError for a missing file, an unusable port or host, a page that was not built, and without the packages
+    of the extra ``review``.
     """
+    need("fastapi", "uvicorn", "websockets")
+    import uvicorn  # an extra brings what serves the page
+
+    from ringlet.viewer.server import LOOPBACK, STATIC, AccessControl, make_app
+
     file = Path(file)
     if not file.is_file():
         wrong = "is a folder" if file.is_dir() else "there is no such file"
