@@ -57,12 +57,11 @@ PAGE_FOOT = """
 ## What a groomer would still refuse
 
 - Wash-and-go: coils are of one size near the part, and their highlights read as beads.
-- Pictures are from before hair was gathered over a length at the roots of braids, and before the denoiser kept single
-  hairs. In them, hair of box braids gathers in pointed tufts.
+- Most pictures are from before the denoiser kept single hairs.
 - Box braids: two braids hang off the cheek.
 - Locs: at part lines, hair gathers in tufts, without new growth that stands; ridges along a loc are too even.
-- Cornrows: hairs that join the lower rows stand off like the teeth of a comb; rows begin as blunt as a brush.
-- Flat twists: the rows over the ears are wide and begin as blunt as a brush.
+- Cornrows: at the temple, the first hairs of a row begin on a straight line across it, not on the hairline.
+- Flat twists: the rows over the ears are wide.
 - Cornrows and flat twists: tails of neighbouring rows overlap at the nape.
 - On the adult, rows turn aside at their last centimetre, at the nape. Strands of the cornrow over its right ear overlap
   one another.

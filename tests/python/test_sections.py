@@ -136,6 +136,15 @@ def test_hairs_lie_flat_from_their_root_to_where_their_strand_is_woven():
     assert height[:, 6].max() < 0.004 < height[:, -1].max()  # where the strand is woven it stands off
 
 
+def test_hairs_of_a_wide_section_come_over_the_skin_that_bulges_between():
+    made = groom("strands = 3\nsize = 6", BRAID + "start = 0.3\n")
+    hairs = hairs_of(made, per_lock=150)
+    points = hairs.points.reshape(len(hairs), -1, 3).astype(np.float64)[hairs.ids % 10_000 > 0]
+    surface = Scalp(ball(), "scalp").solid
+    height = surface.above(np.ascontiguousarray(points[:, :14].reshape(-1, 3)))[0].reshape(-1, 14)
+    assert np.mean((height < -3e-4).any(axis=1)) < 0.02
+
+
 def test_hairs_gather_over_a_length_of_their_strand_and_bend_little_at_the_skin():
     made = groom("strands = 3\nsize = 4", BRAID)
     hairs = hairs_of(made, per_lock=150)

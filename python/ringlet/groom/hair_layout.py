@@ -22,7 +22,7 @@ from ringlet.groom.fiber import seen_widths
 from ringlet.groom.hair_curl import Placed
 from ringlet.groom.hair_settings import IDS_PER_LOCK, HairSettings, fiber_settings, hair_values, lock_radii
 from ringlet.groom.operators.woven import JOIN
-from ringlet.groom.shares import LAID, REACH, fed, scattered
+from ringlet.groom.shares import LAID, REACH, fed, gathered, scattered
 from ringlet.groom.thinning import thinned
 from ringlet.groom.values import Values
 
@@ -30,7 +30,8 @@ FRIZZ_KNOTS = 8
 PLASTIC = np.array([0.7548776662466927, 0.5698402909980532])  # steps of a low-discrepancy sequence in the plane
 MIRRORED = 1e-4  # distance from the region from which a root is mirrored at its border [m]
 LATEST_JOIN = 0.9  # part of a lock
-FIRST_JOIN, LAST_JOIN = 0.4, 1.5  # factor on it for hair at the strand and at the border of its share
+LEAST_RISE = 0.04  # sine of the angle at which a hair that goes straight to its strand leaves the skin
+LATER, TRIES = 0.25, 40  # how much later it joins until it does, in `JOIN` of its lock, and how often at most
 PACE_EASE = 0.3  # half the part of `root_falloff` over which a flat hair turns into its lock
 
 
@@ -63,8 +64,10 @@ def place_hairs(groom: Groom, settings: HairSettings, fraction: float, wider: bo
     if shared.any():
         of = lock[shared]
         places[shared] = scattered(locks.curve[REACH][of], roots[of], frames[of, :, 2], disk[shared])
-        joins[shared] = np.minimum(joins[shared] * _gathered(disk[shared]), LATEST_JOIN)
+        joins[shared] = np.minimum(joins[shared] * gathered(np.linalg.norm(disk[shared], axis=1)), LATEST_JOIN)
     root_triangle, root_barycentric = _rooted(groom, places)
+    if (flat := _is_shared(locks)[lock]).any():
+        joins[flat] = _clear(groom, root_triangle[flat], root_barycentric[flat], lock[flat], joins[flat])
     root_triangle[~hairs.free] = locks.curve["root_triangle"]
     root_barycentric[~hairs.free] = locks.curve["root_barycentric"]
 
@@ -176,13 +179,22 @@ def _fed(
     return found.places, found.joins
 
 
-def _gathered(disk: NDArray) -> NDArray[np.float64]:
-    """Factor on where hairs join a strand, for their places in its share, carried to the unit disk, shape (n,).
+def _clear(groom: Groom, triangle: NDArray, barycentric: NDArray, lock: NDArray, joins: NDArray) -> NDArray[np.float64]:
+    """Where hairs with roots in triangles (n,) at barycentrics (n, 3) join their locks (n,): no sooner than ``joins``.
 
-    Hair near the strand joins it first, and hair from the part lines last, where the strands are together. Were all to
-    join at one height, each share would stand as a tent, with skin between the tents of a section.
+    A hair goes straight to its lock. It joins later where skin that bulges on the way would hide it, if that helps.
     """
-    return FIRST_JOIN + (LAST_JOIN - FIRST_JOIN) * np.minimum(np.linalg.norm(disk, axis=1), 1.0)
+    points, locks = np.ascontiguousarray(groom.scalp.points, np.float64), groom.locks
+    roots, frames = _core.root_frames(points, groom.scalp.triangles, triangle, barycentric)
+    first, last = locks.offsets[lock], locks.counts[lock] - 1
+    step, later, found = LATER * lock_joins(locks)[lock], joins.copy(), np.zeros(len(lock), np.bool_)
+    for _ in range(TRIES):
+        way = locks.points[first + np.rint(later * last).astype(np.int64)] - roots
+        found |= np.sum(way * frames[:, :, 2], axis=1) >= LEAST_RISE * np.linalg.norm(way, axis=1)
+        if found.all():
+            break
+        later = np.where(found, later, np.minimum(later + step, LATEST_JOIN))
+    return np.where(found, later, joins)
 
 
 def lock_joins(locks: Curves) -> NDArray[np.float64]:

@@ -27,7 +27,7 @@ SAMPLES_A_SIDE = 6  # of the scalp, per side of a section
 WHOLE = 0.35  # a cell with less than this part of the usual area, or a row of the usual width, belongs to its neighbour
 FLATTEST = 20.0  # radius of the sphere through a flat scalp, in sizes of the scalp
 NEARER = 3  # tries of strands to grow: at their place, and nearer to the middle by a half each
-STRANDS_APART = 0.2  # distance of a section's strands from its middle at the scalp, in sizes of the section
+STRANDS_APART = 0.1  # distance of a section's strands from its middle at the scalp, in sizes of the section
 
 # Further curve attributes of locks in sections: which of its strands; place in the section, 0 to 1 each; distance
 # from the section's border [m]. ``AREA`` is that whose hair a strand carries, part lines included [m²]; 0 for others.

@@ -14,8 +14,8 @@ from ringlet.groom.scalp import Scalp, tangents
 from ringlet.groom.sections import AREA, EDGE, Division
 
 DIRECTIONS = 48
-FRONT = 0.12  # part of a row's hairs that grow at its front
-LAST_JOIN = 0.97  # part of a row
+FIRST_JOIN, LAST_JOIN = 0.4, 1.5  # factor on where hair at the strand, and at the border of its share, joins it
+LATEST = 0.97  # of joins, as a part of a row
 HALVINGS = 9  # of a reach
 FARTHEST = 1.5  # reach, in sizes of a section
 BEYOND = 3e-4, 0.1  # how far a place is from the nearest of the scalp, across the normal: [m], and per reach
@@ -142,9 +142,8 @@ def fed(
     feed:  part of the strand between where a hair grows and where it joins
     at:    numbers from 0 to 1 of each hair, shape (n, 2): along the row, and from it to the border of its section
     """
-    along = laid * np.clip((at[:, 0] - FRONT) / (1.0 - FRONT), 0.0, None)
-    along = np.where(at[:, 0] < FRONT, at[:, 0] / FRONT * min(feed, laid), along)
-    joins = np.minimum(along + feed, LAST_JOIN * laid)
+    along = laid * at[:, 0]
+    joins = np.minimum(along + feed * gathered(at[:, 1]), LATEST * laid)
     foot, tangent = _on(middle, along)
     up = scalp.above(np.ascontiguousarray(foot))[2]
     across = np.cross(up, tangent)
@@ -155,6 +154,15 @@ def fed(
     where = np.arange(DIRECTIONS // 2)
     far = np.where(left, np.interp(k, where, reach[: DIRECTIONS // 2]), np.interp(k, where, reach[DIRECTIONS // 2 :]))
     return Fed(foot + (np.where(left, 1.0, -1.0) * at[:, 1] * far)[:, None] * across, joins)
+
+
+def gathered(far: NDArray) -> NDArray[np.float64]:
+    """Factor on where hairs join a strand, for how far off it they grow, from 0 to 1 at the border, shape (n,).
+
+    Hair near the strand joins it first, and hair from the part lines last, where the strands are together. Were all to
+    join at one height, each share would stand as a tent, with skin between the tents of a section.
+    """
+    return FIRST_JOIN + (LAST_JOIN - FIRST_JOIN) * np.minimum(far, 1.0)
 
 
 def _on(line: NDArray, t: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
