@@ -15,7 +15,8 @@ import type { Body as BodyMessage } from "../protocol";
 import type { Lights } from "./lights";
 import type { Side } from "./looks";
 import { LIGHTS } from "./shaders";
-import { type LightVolume, type Surface, VOLUME } from "./volume";
+import type { Surface } from "./grid";
+import { type LightVolume, VOLUME } from "./volume";
 
 const VERTEX = /* glsl */ `
 precision highp float;

@@ -20,7 +20,7 @@ import {
 } from "three";
 import { LOOKUP, TONE } from "./shaders";
 import type { Slices, Work } from "./slices";
-import type { Grid, Matter } from "./volume";
+import type { Grid, Matter } from "./grid";
 
 const MOST = 300_000; // points that are added up; fewer hairs stand for all
 

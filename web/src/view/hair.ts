@@ -33,7 +33,9 @@ import type { Rods } from "./rods";
 import { complete, Slices, type Work } from "./slices";
 import { type LockTable, lockTable } from "./table";
 import { Colours } from "./textures";
-import { type Beam, Grid, LightVolume, shell, type Surface } from "./volume";
+import type { Beam } from "./beam";
+import { Grid, shell, type Surface } from "./grid";
+import { LightVolume } from "./volume";
 
 /** A hair colour: linear reflectance in red, green and blue, and the roughness of the fiber along and around it. */
 export type Colour = [number, number, number, number, number];

@@ -3,7 +3,7 @@
 import { type Camera, Matrix4, Vector3 } from "three";
 import type { Lamp, Rig } from "../protocol";
 import type { Portrait } from "./framing";
-import type { Beam } from "./volume";
+import type { Beam } from "./beam";
 
 const LAMPS = 4;
 const UP = new Vector3(0, 1, 0);
