@@ -14,10 +14,11 @@ import {
   WebGLRenderTarget,
 } from "three";
 import type { Hairs } from "../protocol";
+import { Clumps } from "./clumps";
 import { MOST_VERTICES } from "./rods";
 import { LOOKUP } from "./shaders";
 import type { Slices, Work } from "./slices";
-import type { LockTable } from "./table";
+import { type LockTable, squaredRadii } from "./table";
 import { Numbers, Shares, WIDTH } from "./textures";
 
 const VERTEX = /* glsl */ `
@@ -162,6 +163,7 @@ export class Carry {
   private readonly material: RawShaderMaterial;
   private readonly numbers: Record<string, Numbers> = {};
   private readonly left: Shares;
+  private readonly clumps: Clumps;
   private roots: Float32Array | null = null;
   /** Rows of the target that are up to date. */
   private carried = 0;
@@ -174,6 +176,7 @@ export class Carry {
     most: number,
   ) {
     this.count = Math.min(hairs.count, Math.floor((most * WIDTH) / hairs.points));
+    this.clumps = new Clumps(hairs);
     this.left = new Shares(this.count * hairs.points);
     this.target = target(this.count * hairs.points);
     this.material = new RawShaderMaterial({
@@ -262,6 +265,7 @@ export class Carry {
     this.put("lockB", table.b);
     this.put("lockU", table.u);
     this.put("lockV", table.v);
+    this.put("hairLeft", this.clumps.left(squaredRadii(table)));
     // Locks with the frames of their coils follow the hairs that need them: until then these follow their lock.
     this.material.uniforms["curled"].value = this.hairs.coil.length > 0 && table.u.length > 4;
     this.setPlaces(table);

@@ -38,6 +38,16 @@ export function lockTable(points: Float32Array, offsets: Int32Array, axis: Float
   return table;
 }
 
+/** Mean square radius of each lock's coil [m²]; none without the frames of centre lines. */
+export function squaredRadii({ places, u, v }: LockTable): Float64Array {
+  return Float64Array.from({ length: u.length > 4 ? places.length / 4 : 0 }, (_, lock) => {
+    const [first, last] = [places[4 * lock], places[4 * lock] + places[4 * lock + 1]];
+    let sum = 0;
+    for (let row = first; row <= last; row++) sum += u[4 * row + 3] ** 2 + v[4 * row + 3] ** 2;
+    return sum / (last - first + 1);
+  });
+}
+
 type Vector = Float64Array;
 
 // Vectors that are used again and again: this runs for every point while a hand moves, and new ones would be garbage.
