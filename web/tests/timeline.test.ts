@@ -28,6 +28,20 @@ function answer(page: Page): void {
   }
 }
 
+test("space plays after a click on a button, and presses one that has the focus by keys", async () => {
+  const page = await open("small.shot");
+  simulated(page, 4);
+  const { timeline } = page.app;
+  const button = find<HTMLButtonElement>(".timeline button");
+  button.focus();
+  expect(press(" ", {}, button)).toBe(false);
+  button.dispatchEvent(new MouseEvent("pointerdown", { bubbles: true }));
+  const shown = vi.spyOn(timeline, "show");
+  expect(press(" ", {}, button)).toBe(true);
+  vi.advanceTimersByTime(350);
+  expect(shown).toHaveBeenCalled();
+});
+
 test("frames are played between in and out points, at a rate", async () => {
   const page = await open("small.shot");
   simulated(page, 4);

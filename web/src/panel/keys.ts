@@ -40,12 +40,26 @@ export function typing(event: Event): boolean {
   return Boolean(target?.closest?.("input:not([type=range], [type=checkbox], [type=radio], [type=color]), textarea"));
 }
 
+/** The button that a pointer has pressed, and that has the focus by this alone: keys are meant for the page. */
+let clicked: Element | null = null;
+addEventListener("pointerdown", ({ target }) => (clicked = target instanceof Element ? target.closest("button, summary, a") : null), true);
+addEventListener(
+  "focusout",
+  ({ target }) => {
+    if (target === clicked) clicked = null;
+  },
+  true,
+);
+
 /** Whether a control with the focus, or a dialog, has a use of its own for plain keys. */
 function taken(event: KeyboardEvent): boolean {
   const target = event.target as HTMLElement | null;
   if (document.querySelector("dialog[open]")) return true;
   if (!target?.closest) return false;
-  if (event.key === " " || event.key === "Enter") return Boolean(target.closest("button, summary, input, select, a"));
+  if (event.key === " " || event.key === "Enter") {
+    const control = target.closest("button, summary, input, select, a");
+    return control !== null && control !== clicked;
+  }
   if (/^(Arrow|Home|End)/.test(event.key)) return Boolean(target.closest("input, select, svg, [role=slider]"));
   return Boolean(target.closest("select"));
 }
