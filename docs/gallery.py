@@ -222,14 +222,13 @@ def write_page(styles: list[Style]) -> None:
 
 
 def outdated(styles: list[Style]) -> list[str]:
-    """A line of the page on the pictures that are there but show an earlier recipe, if there are any."""
-    names = [
-        f"`{picture_path(style, name).stem}`"
+    """A list for the page of the pictures that are there but show an earlier recipe, if there are any."""
+    of_styles = [
+        (style.title, [name for name in due_names if picture_path(style, name).exists()])
         for style, due_names in due(styles, again=False)
-        for name in due_names
-        if picture_path(style, name).exists()
     ]
-    return [f"Pictures that show an earlier recipe or operator: {', '.join(names)}.\n"] if names else []
+    lines = [f"- {title}: {', '.join(names)}" for title, names in of_styles if names]
+    return ["Pictures that show an earlier recipe or operator:\n", *lines, ""] if lines else []
 
 
 def section(style: Style) -> str:
