@@ -170,6 +170,27 @@ def test_damaged_hairs_on_demand_are_refused(copy, name):
     assert not (copy / "x.usdc").exists()
 
 
+# Parts of a clip
+
+
+def test_parts_of_a_clip_have_the_velocities_of_the_whole(curled):
+    def velocities(frames: str) -> dict[float, np.ndarray]:
+        path = hairs(curled, "--velocities", "--frames", frames, name=f"part{frames.replace(':', '_')}.usdc")
+        stage = Usd.Stage.Open(str(path))
+        curves = UsdGeom.BasisCurves.Get(stage, "/groom/hairs")
+        found = curves.GetVelocitiesAttr()
+        assert found.GetTimeSamples() == curves.GetPointsAttr().GetTimeSamples()
+        return {time: np.array(found.Get(time)) for time in found.GetTimeSamples()}
+
+    whole = velocities("1:4")
+    assert [*whole] == [1.0, 2.0, 3.0, 4.0] and np.abs(whole[2.0] - whole[3.0]).max() > 0.0
+    for frames, times in {"1:2": [1.0, 2.0], "2": [2.0], "3": [3.0], "3:4": [3.0, 4.0], "4": [4.0]}.items():
+        part = velocities(frames)
+        assert [*part] == times
+        for time in times:
+            np.testing.assert_array_equal(part[time], whole[time])
+
+
 # Levels of detail
 
 

@@ -72,12 +72,16 @@ def measure_hairs(
 
 
 class _Motion(NamedTuple):
-    """What carries hairs: ``frame`` (None at rest), locks, scalp and surfaces, as ``Hairs.deformed`` takes them."""
+    """What carries hairs: ``frame`` (None at rest), locks, scalp and surfaces, as ``Hairs.deformed`` takes them.
+
+    beside: whether the frame is one before or after those that are asked for
+    """
 
     frame: float | None
     locks: NDArray[np.floating]
     scalp: NDArray[np.floating]
     surfaces: list[tuple[NDArray, NDArray]]
+    beside: bool = False
 
 
 @recorded()
@@ -114,7 +118,8 @@ def write_hairs(
     pixels:     width of the picture of that camera
     lod:        writes the levels of detail ``LEVELS`` as variants ``LOD0``, ``LOD1``, … of ``/groom/hairs``
     on_demand:  writes what a renderer makes hairs of, in place of their points
-    velocities: writes those of hairs in motion too, in units per second, which doubles the size of the file
+    velocities: writes those of hairs in motion too, in units per second, which doubles the size of the file; at both
+                ends from the frames beside them in the cache
     variant:    of the groom, in place of the one that is selected in it, or that the cache was made of
     measures:   receives the entries of ``measure_hairs``; ``fraction``, where a camera chose it; and of hairs in motion
                 with points ``length_change``, the largest fraction by which one gets longer or shorter than in the
@@ -164,7 +169,7 @@ def write_hairs(
     under, written = Path(groom if cache is None else cache), 0
     if expanded:
         under = io.layer_under_on_demand(groom)
-    with _motion(groom, cache, locks, frames) as (total, moments):
+    with _motion(groom, cache, locks, frames, beside=velocities) as (total, moments):
         if on_demand:
             with io.OnDemandWriter(Path(path), locks, finest, under) as writer:
                 writer.add(None, rest.locks, rest.scalp)
@@ -181,10 +186,13 @@ def write_hairs(
                 for at in moments:
                     for level, hairs in enumerate(levels):
                         moved = hairs.deformed(at.locks, at.scalp, surfaces=at.surfaces)
+                        if at.beside and at.frame is not None:
+                            writer.add_beside(at.frame, moved, level=level)
+                            continue
                         writer.add(at.frame, moved, around=at.scalp, level=level)
                         if level == 0 and at.frame is not None:
                             lengths.add(at.frame, moved)
-                    written = _reported(written, total, progress)
+                    written = written if at.beside else _reported(written, total, progress)
                 if measures is not None and written:
                     measures |= {"length_change": lengths.change, "length_change_frame": lengths.frame}
     return {
@@ -218,16 +226,28 @@ def _surfaces_at_rest(groom: Path | str, locks: Groom) -> list[tuple[NDArray, ND
 
 @contextmanager
 def _motion(
-    groom: Path | str, cache: Path | str | None, locks: Groom, frames: tuple[int, int] | None
+    groom: Path | str,
+    cache: Path | str | None,
+    locks: Groom,
+    frames: tuple[int, int] | None,
+    *,
+    beside: bool = False,
 ) -> Iterator[tuple[int, Iterator[_Motion]]]:
-    """The number of frames of a cache, and what carries hairs at each; none without a cache."""
+    """The number of frames of a cache, and what carries hairs at each; none without a cache.
+
+    beside: also gives the frames of the cache before the first and after the last, which do not count
+    """
     if cache is None:
         yield 0, iter(())
         return
     with io.open_cache(cache) as moved:
         chosen = moved.within(frames if frames is not None else _made_frames(groom))
-        clip = scalp_clip(locks, (math.floor(chosen[0]), math.ceil(chosen[-1])))
-        yield len(chosen), (_motion_at(cache, moved, locks, clip, float(frame)) for frame in chosen)
+        all_frames = moved.frames
+        before, after = (all_frames[all_frames < chosen[0]][-1:], all_frames[all_frames > chosen[-1]][:1])
+        given = np.concatenate([before, chosen, after]) if beside else chosen
+        clip = scalp_clip(locks, (math.floor(given[0]), math.ceil(given[-1])))
+        moments = (_motion_at(cache, moved, locks, clip, float(frame)) for frame in given)
+        yield len(chosen), (at._replace(beside=at.frame not in chosen) for at in moments)
 
 
 def _made_frames(groom: Path | str) -> tuple[int, int] | None:

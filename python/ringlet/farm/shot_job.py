@@ -106,7 +106,7 @@ def shot_job(
         locks = [*locks, "Rest"]
     simulate = ["sim", "{Shot}", "--groom", "{Groom}", "-o", "{Cache}", "--resume"]
     hair = ["hair", "{Groom}", "--cache", "{Cache}", "-o", "{Hair}", "--on-demand"]
-    points = ["hair", "{Hair}", "-o", "{Points}/{Frame}.usdc", "--frames", "{Frame}"]
+    points = ["hair", "{Hair}", "-o", "{Points}/{Frame}.usdc", "--frames", "{Frame}", "--velocities"]
     render = [
         "render",
         "{Hair}",
