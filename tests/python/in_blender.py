@@ -6,6 +6,7 @@ in_blender.py SCENE.json FOLDER ACTION [FILE …]; the folder holds the extensio
 from __future__ import annotations
 
 import json
+import os
 import sys
 from pathlib import Path
 
@@ -14,6 +15,7 @@ import numpy as np
 
 sys.path.insert(0, sys.argv[2])
 import ringlet_groom
+from ringlet_groom.refused import Refused, need_blender
 
 VALUES = {"FLOAT_VECTOR": ("vector", 3), "FLOAT2": ("vector", 2), "FLOAT": ("value", 1), "INT": ("value", 1)}
 
@@ -63,7 +65,7 @@ def refused(operator, **settings) -> str:
     """The error message of an operator, empty on success."""
     try:
         operator(**settings)
-    except RuntimeError as error:
+    except (RuntimeError, Refused) as error:
         return str(error)
     return ""
 
@@ -85,6 +87,7 @@ def main(action: str, *files: str) -> dict:
             "no file": refused(bpy.ops.ringlet.import_groom, filepath=files[0]),
             "no groom": refused(bpy.ops.ringlet.import_groom, filepath=files[1]),
             "no groom to play": refused(bpy.ops.ringlet.play_cache, filepath=files[1]),
+            "too old": refused(need_blender, version=(99, 1), what="a.usdc: cannot be read"),
             "objects": len(bpy.data.objects),
         }
     elif action == "back":
@@ -99,3 +102,4 @@ def main(action: str, *files: str) -> dict:
 
 if __name__ == "__main__":
     Path(sys.argv[1]).write_text(json.dumps(main(*sys.argv[3:])))
+    os._exit(0)  # modules of Blender 4 crash, or wait for ever, while Python ends

@@ -743,3 +743,4 @@ def main(extension: str, action: str, folder: str) -> dict:
 
 if __name__ == "__main__":
     Path(sys.argv[1]).write_text(json.dumps(main(*sys.argv[2:])))
+    os._exit(0)  # modules of Blender 4 crash, or wait for ever, while Python ends

@@ -139,6 +139,7 @@ def test_the_add_on_refuses_other_files_and_leaves_the_scene_unchanged(groom, bl
     assert "there is no such file" in scene["no file"]
     assert "head.usdc: is not a Ringlet groom" in scene["no groom"]
     assert "There is no groom in the scene" in scene["no groom to play"]
+    assert "use 99.1 or later" in scene["too old"]
     assert scene["objects"] == 0
 
 

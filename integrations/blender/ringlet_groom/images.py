@@ -10,7 +10,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from .refused import Refused
+from .refused import Refused, need_blender
 
 REST = 10.0  # the pixels of an image are read again after so many times as long as it took
 
@@ -33,6 +33,7 @@ def file_of(image: bpy.types.Image, folder: Path, name: str) -> str:
     """
     if (path := _on_disk(image)) is not None:
         return str(path)
+    need_blender((4, 4), f"{image.name}: is painted, and cannot be written as a copy")
     place = folder / f"{name}.png"
     place.parent.mkdir(parents=True, exist_ok=True)
     own = image.file_format

@@ -16,7 +16,7 @@ import numpy as np
 
 from . import installation
 from .curves import draw_curls
-from .refused import Refused
+from .refused import Refused, need_blender
 from .session import clean_environment
 
 HAIRS = "/groom/hairs"
@@ -39,6 +39,7 @@ def import_groom(context: bpy.types.Context, path: str, *, show_locks: bool = Fa
     Hairs on demand are expanded to a file next to theirs, meanwhile Blender waits.
     """
     require_file(path)
+    need_blender((4, 4), f"{Path(path).name}: cannot be read with its unit and its prims")
     before = set(bpy.data.objects)
     # Locks are guides to USD; and only with every transform an object of its own do objects tell their prims.
     bpy.ops.wm.usd_import(filepath=path, import_guide=True, merge_parent_xform=False)
