@@ -889,6 +889,8 @@ MORE = [
         line(f"wedge {SHOT} --openjd plan.txt --set solver.newton=1"), line(f"{PLAN} --set solver.newton=1")),
     Advice("must end in .json for Open Job Description, .alf for Tractor or",
         line(f"farm {SHOT} --camera /cam -o plan.txt"), line(f"farm {SHOT} --camera /cam -o plan.alf")),
+    Advice("{}: is finished hair, not a groom; make a recipe of it first", line(f"farm {SHOT} --camera /cam "
+        "--groom head.usda"), line(f"farm {SHOT} --camera /cam --groom {RECIPE}")),
     Advice("was made from other locks ({}, the groom has {}); {}", in_order(added(SHOT,
         '\n[rest]\nmode = "lofted"\n'), line(f"loft {SHOT} --groom groom.usdc"), changed(RECIPE, ("count = 8",
         "count = 9")), line(f"sim {SHOT} -o out.usdc")), in_order(line(f"loft {SHOT}"),

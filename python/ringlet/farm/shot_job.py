@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+from ringlet.api.adoption import is_finished_hair
 from ringlet.api.shots import input_files, read_shot
 from ringlet.data.errors import UserError
 from ringlet.data.files import check_place
@@ -50,7 +51,7 @@ def write_shot_job(
     samples: light paths of a pixel
     exr:     writes pictures as EXR with all layers, in place of PNG
 
-    Raises UserError for another suffix, and for a shot that is not valid.
+    Raises UserError for another suffix, for finished hair of other programs, and for a shot that is not valid.
     """
     path = Path(path)
     if path.suffix not in FARMS:
@@ -82,6 +83,8 @@ def shot_job(
     """
     shot = read_shot(path)
     source = given or shot.groom
+    if is_finished_hair(source):
+        raise UserError(f"{source}: is finished hair, not a groom; make a recipe of it first: ringlet adopt {source}")
     files = {
         "Shot": File(path.absolute(), "The shot"),
         "Groom": File(source.absolute(), "The groom"),
