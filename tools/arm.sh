@@ -79,7 +79,7 @@ wheel() { # with the platform tag that fits, and libgomp in it
     PATH=$bin:$PATH LD_LIBRARY_PATH=$sysroot/usr/lib/aarch64-linux-gnu \
         "$bin/auditwheel" repair --wheel-dir dist "$arm"/wheel/ringlet-*.whl
     make_environment
-    install "$(ls -t dist/ringlet-*aarch64.whl | head -1)" pytest pytest-timeout httpx hypothesis
+    install "$(ls -t dist/ringlet-*aarch64.whl | head -1)[pictures,review]" pytest pytest-timeout httpx hypothesis
     PATH=$arm/venv/bin:$PATH bash tools/try_wheel.sh
 }
 
