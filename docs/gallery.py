@@ -59,7 +59,7 @@ PAGE_FOOT = """
 - Wash-and-go: coils are of one size near the part, and their highlights read as beads.
 - Most pictures are from before the denoiser kept single hairs.
 - Box braids: two braids hang off the cheek.
-- Locs: at part lines, hair gathers in tufts, without new growth that stands; ridges along a loc are too even.
+- Locs: at part lines, hair gathers in tufts; ridges along a loc are too even.
 - Cornrows: at the temple, the first hairs of a row begin on a straight line across it, not on the hairline.
 - Flat twists: the rows over the ears are wide.
 - Cornrows and flat twists: tails of neighbouring rows overlap at the nape.

@@ -8,11 +8,13 @@ import pytest
 from ringlet.data.groom import SECTION, STRAND_RADIUS
 from ringlet.data.pigment import curve_reflectance
 from ringlet.groom.check import KINDS, Allowed, Bodies, find, lock_of
+from ringlet.groom.hairline import border_points
 from ringlet.groom.operators.operator import arc_lengths, grid
 from ringlet.groom.operators.tied import TO_TIE
 from ringlet.groom.scalp import Scalp
 from ringlet.groom.sections import STRAND
 from ringlet.groom.shares import LAID, REACH
+from scipy.spatial import KDTree
 
 import ringlet
 from ringlet.groom import PRESETS, grooms_of, hairs_per_cm2, make_hairs, read_recipe
@@ -60,6 +62,24 @@ def test_tails_of_rows_leave_the_ears_free_and_no_skin_presses_their_strands_int
     beyond = (arc_lengths(points) > locks.curve[LAID][:, None]).ravel()
     section = locks.curve[SECTION][lock_of(locks, pair.ravel())].reshape(pair.shape)
     assert not (beyond[pair].all(axis=1) & (section[:, 0] == section[:, 1])).any()
+
+
+def test_new_growth_is_short_single_hairs_that_are_densest_at_the_hairline():
+    groom = built(EXAMPLES / "looks" / "grown_locs.recipe.toml")
+    assert set(groom.grooms) == {"growth", "locs"}
+    alone = grooms_of(groom)["growth"]
+    hairs = make_hairs(alone).curves
+    points = hairs.points.reshape(len(hairs), -1, 3)
+    away = np.linalg.norm(points - points[:, :1], axis=2).max(axis=1)
+    assert 0.003 < np.median(away) < 0.012 and np.quantile(away, 0.99) < 0.025
+    scalp = Scalp(alone.scalp, alone.region)
+    far = KDTree(border_points(scalp)).query(hairs.roots)[0]
+    places = scalp.positions(*scalp.sample(4000, 1)[1:])
+    place = KDTree(border_points(scalp)).query(places)[0]
+    density = [
+        np.mean((a <= far) & (far < b)) / np.mean((a <= place) & (place < b)) for a, b in ((0, 0.005), (0.02, 0.1))
+    ]
+    assert density[0] > 1.5 * density[1]
 
 
 @pytest.mark.parametrize("recipe", TIED_LOOKS, ids=name)

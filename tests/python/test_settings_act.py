@@ -105,7 +105,7 @@ BESIDE = {
     "Tie.height": "after = 'bun'\n",
     "Tie.windings": "after = 'bun'\n",
     "Tie.each": "\n[locks.sections]\nsize = 6\nstrands = 2\n",
-    "Cut.each": "\n[locks.sections]\nsize = 6\nstrands = 2\n",
+    "Cut.each": "\n[guides]\nlength = 20\ngravity_bend = 5\n[locks.sections]\nsize = 6\nstrands = 2\n",
     "GrowTo.each": "\n[locks.sections]\nsize = 6\nstrands = 2\n",
     "Edges.wavelength": "wave = 60\n",
     "Curl.pitch": "\n[curl]\ncurls = 'none'\npitch = 2\n",

@@ -231,4 +231,4 @@ def test_strands_miss_as_much_of_their_motion_as_their_cores(folder: Path, groom
     converged = moved(60)
     for newton in (1, 2, 3):
         core, strand = moved(newton) / converged
-        assert strand == pytest.approx(core, abs=0.01) and (newton > 1 or strand < 0.8)
+        assert strand == pytest.approx(core, abs=0.02) and (newton > 1 or strand < 0.8)

@@ -18,6 +18,7 @@ from ringlet.groom import felt, hair_curl
 from ringlet.groom.color import hair_colors
 from ringlet.groom.hair_layout import lock_joins, place_hairs, points_of_hairs
 from ringlet.groom.hair_settings import HairSettings, fiber_settings, hair_settings, hair_values
+from ringlet.groom.part_line import TO_PART
 from ringlet.groom.scalp import axes
 from ringlet.groom.shares import LAID, REACH
 
@@ -113,7 +114,7 @@ def _key(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -> 
         locks.offsets,
         locks.curve["root_triangle"],
         locks.curve["root_barycentric"],
-        locks.curve.get(REACH, np.empty(0)),
+        *(locks.curve[name] for name in (REACH, TO_PART) if name in locks.curve),
         lock_joins(locks),
         *((locks.points, locks.curve[LAID]) if LAID in locks.curve else ()),
         *(locks.curve[name] for name in (felt.PROFILE, felt.MATTING, felt.FUZZ) if name in locks.curve),

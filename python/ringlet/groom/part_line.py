@@ -16,6 +16,10 @@ from ringlet.groom.helpers import Names
 
 LENGTHS = (1e-6, 1e6)  # of a vector that gives a direction
 
+# Curve attribute of locks: vector across the part line from the root to it [m], shape (count, 3).
+TO_PART = "to_part"
+NEAR_PART, BEYOND_PART = 3.0, 2.0  # in radii of its disk: locks next to the line; how far beyond it a disk is stretched
+
 Component = Annotated[FiniteFloat, Field(ge=-1000, le=1000)]
 Vector = tuple[Component, Component, Component]
 
@@ -56,22 +60,40 @@ class PartLine(Section):
         middle:          centre of the scalp [m]
         helper:          returns the helper curves of a name for a setting
         """
-        across, side, distance = self.sides(places, normals, middle, helper)
-        return side[:, None] * across, 0.5 ** (distance / self.falloff)
+        across, off, distance = self.sides(places, normals, middle, helper)
+        return np.sign(off)[:, None] * across, 0.5 ** (distance / self.falloff)
 
     def sides(
         self, places: NDArray, normals: NDArray, middle: NDArray, helper: Callable[[Names, str], Curves]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-        """Unit directions across it, shape (n, 3), sides of places, −1 or 1, and their distances [m], shape (n,)."""
+        """Unit directions across it, shape (n, 3), how far places are off it along them [m], which is negative on one
+        side, and their distances from it [m], shape (n,)."""
         if self.curve is None:
             across = np.array(self.across) / max(float(np.linalg.norm(self.across)), 1e-12)
             off = (places - middle) @ across - self.offset
-            return np.broadcast_to(across, places.shape), np.sign(off), np.abs(off)
+            return np.broadcast_to(across, places.shape), off, np.abs(off)
         foot, along = _nearest(places, helper(self.curve, "curve"))
         across = np.cross(along, normals)
         across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-12)
-        side = np.sign(np.sum((places - foot) * across, axis=1))
-        return across, side, np.linalg.norm(places - foot, axis=1)
+        return across, np.sum((places - foot) * across, axis=1), np.linalg.norm(places - foot, axis=1)
+
+
+def up_to_part(offsets: NDArray, to_part: NDArray, spread: NDArray) -> NDArray[np.float64]:
+    """Offsets of hairs from their lock's root (n, 3) [m], with those of locks along a part line carried up to the line.
+
+    Locks part along the line, but their hairs grow in disks around them, which would leave bays along the line, or
+    cross it. A disk near the line is stretched beyond it, and what crosses the line is mirrored at it.
+
+    to_part: ``TO_PART`` of the lock of each, shape (n, 3)
+    spread:  radius of its disk [m], shape (n,)
+    """
+    far = np.maximum(np.linalg.norm(to_part, axis=1), 1e-12)
+    across = to_part / far[:, None]
+    toward = np.sum(offsets * across, axis=1)
+    stretched = (toward > 0.0) & (far < NEAR_PART * spread)
+    carried = toward * np.where(stretched, np.maximum(BEYOND_PART * far / np.maximum(spread, 1e-12), 1.0), 1.0)
+    carried = np.minimum(carried, 2.0 * far - carried)
+    return np.asarray(offsets + (carried - toward)[:, None] * across)
 
 
 def _nearest(places: NDArray, lines: Curves) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -17,6 +17,7 @@ from ringlet.data.groom import ADOPTED, SECTION
 from ringlet.data.quantities import Quantity, refuse
 from ringlet.groom.hairline import Hairline
 from ringlet.groom.operators.operator import Context, Operator, arc_lengths, packed, unit
+from ringlet.groom.part_line import TO_PART
 from ringlet.groom.sections import AREA, STRAND, Sections
 from ringlet.groom.shares import DIRECTIONS, REACH, reaches
 
@@ -98,10 +99,13 @@ class Locks(Operator):
         if not len(ids):
             raise UserError("locks.hairline leaves no hair: raise its density, or make it narrower")
         points = self._interpolated(shapes, curves, triangle, barycentric, context)
+        normals = _core.root_frames(scalp.points, scalp.triangles, triangle, barycentric)[1][:, :, 2]
         if fade:
             loose = attributes.get(STRAND, np.full(len(ids), -1)) < 0
-            normals = _core.root_frames(scalp.points, scalp.triangles, triangle[loose], barycentric[loose])[1][:, :, 2]
-            points[loose] = fade.shaped(points[loose], normals)
+            points[loose] = fade.shaped(points[loose], normals[loose])
+        if (part := context.part_line) is not None:
+            across, off, _ = part.sides(points[:, 0], normals, scalp.middle, context.helper)
+            attributes[TO_PART] = (-off[:, None] * across).astype(np.float32)
         return _pack(points, ids, triangle, barycentric, attributes)
 
     def _sectioned(
@@ -173,14 +177,14 @@ class Locks(Operator):
         if (part := context.part_line) is None:
             return distance, index
         given = context.scalp.middle, context.helper
-        _, side, away = part.sides(roots, normals, *given)
+        _, off, away = part.sides(roots, normals, *given)
         _, of_guides, _ = part.sides(np.asarray(guides.roots, np.float64), guide_normals, *given)
         for one in (-1.0, 1.0):
-            here = np.flatnonzero((side == one) & (away < part.falloff))
-            own = np.flatnonzero(of_guides == one)
+            here = np.flatnonzero((np.sign(off) == one) & (away < part.falloff))
+            own = np.flatnonzero(np.sign(of_guides) == one)
             if len(own) >= count and len(here):
-                off, near = KDTree(guides.roots[own]).query(roots[here], k=count)
-                distance[here], index[here] = off.reshape(-1, count), own[near.reshape(-1, count)]
+                apart, near = KDTree(guides.roots[own]).query(roots[here], k=count)
+                distance[here], index[here] = apart.reshape(-1, count), own[near.reshape(-1, count)]
         return distance, index
 
 
