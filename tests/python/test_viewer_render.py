@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,11 @@ from pages import page, serving
 from PIL import Image
 from ringlet.picture.camera import frame
 from ringlet.viewer.protocol import Render
-from ringlet.viewer.show.rendering import camera_of
+from ringlet.viewer.show.display_groom import DisplayGroom
+from ringlet.viewer.show.rendering import camera_of, poses_of
+
+from ringlet import build_groom
+from ringlet.groom import lay_hairs
 
 
 def request(**more: object) -> dict:
@@ -33,6 +38,17 @@ def test_the_camera_of_a_page_is_that_of_a_portrait():
     camera = camera_of(message, origin)
     assert np.allclose(camera.origin, portrait.origin) and np.allclose(camera.axes, portrait.axes)
     assert camera.distance == pytest.approx(portrait.distance) and camera.slopes == pytest.approx(portrait.slopes)
+
+
+@pytest.mark.parametrize("adopted", [False, True])
+def test_the_first_picture_has_few_hairs_that_stand_for_all(folder: Path, adopted: bool):
+    groom = build_groom(folder / "small.recipe.toml")
+    hairs = lay_hairs(groom)
+    groom.locks = replace(groom.locks, point={**groom.locks.point, "width": np.full(len(groom.locks.points), 1e-4)})
+    few, whole = (pose.hairs for pose in poses_of(DisplayGroom(groom, None if adopted else hairs, False), []))
+    assert len(whole) == len(groom.locks if adopted else hairs.curves) and 0 < len(few) <= 0.5 * len(whole)
+    widths = [(hairs.point["width"][hairs.offsets[:-1] + 1]).sum() for hairs in (few, whole)]
+    assert widths[0] == pytest.approx(widths[1], rel=0.2)
 
 
 def test_a_render_grows_to_the_samples_that_were_asked_for(folder: Path):

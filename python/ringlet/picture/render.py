@@ -78,20 +78,20 @@ def trace(
     return _denoised(scene, accumulated)
 
 
-def trace_growing(
-    scene: Scene, camera: Camera, size: tuple[int, int], samples: int, *, denoise: bool = True, coarse: int = COARSE
-) -> Iterator[tuple[NDArray[np.floating], int]]:
+def trace_coarse(scene: Scene, camera: Camera, size: tuple[int, int]) -> NDArray[np.floating]:
+    """Light and coverage of a picture of one sample, of ``COARSE`` pixels along a side at most."""
+    mi, scale = mitsuba(), min(1.0, COARSE / max(size))
+    small = max(1, round(scale * size[0])), max(1, round(scale * size[1]))
+    sensor = mi.load_dict(image_sensor(mi, camera, small, scene_scale(camera)))
+    return np.nan_to_num(np.array(mi.render(scene.loaded, sensor=sensor, spp=1), np.float64))
+
+
+def trace_growing(scene: Scene, samples: int, *, denoise: bool = True) -> Iterator[tuple[NDArray[np.floating], int]]:
     """Renders as ``trace``, and yields the picture as it grows: light and coverage, and the samples that it has.
 
-    The first is small, of one sample; then one of each sample per pixel so far; the last is denoised as in ``trace``.
-
-    coarse: most pixels along a side of the small one
+    One of each sample per pixel so far; the last is denoised as in ``trace``.
     """
     mi, accumulated, denoised = mitsuba(), Passes(), denoise and samples >= MIN_DENOISED_PASSES
-    if max(size) > coarse:
-        small = tuple(max(1, round(side * coarse / max(size))) for side in size)
-        sensor = image_sensor(mi, camera, (small[0], small[1]), scene_scale(camera))
-        yield np.nan_to_num(np.array(mi.render(scene.loaded, sensor=mi.load_dict(sensor), spp=1), np.float64)), 1
     for done in range(samples):
         accumulated.add(np.nan_to_num(np.array(mi.render(scene.loaded, spp=1, seed=done), np.float64)))
         if done + 1 < samples or not denoised:

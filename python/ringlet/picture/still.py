@@ -27,6 +27,7 @@ from ringlet.picture.render import (
     layers_of,
     over_backdrop,
     trace,
+    trace_coarse,
     trace_growing,
 )
 from ringlet.picture.rigs import Rig, check_rig
@@ -181,25 +182,32 @@ def rig_around(settings: PictureSettings, seen: Sequence[NDArray[np.floating]], 
     return Rig(settings.light, settings.light_turn, camera.axes, portrait.target, portrait.distance)
 
 
-def growing(pose: Pose, camera: Camera, settings: PictureSettings) -> Iterator[tuple[Image.Image, int]]:
+def growing(poses: Iterator[Pose], camera: Camera, settings: PictureSettings) -> Iterator[tuple[Image.Image, int]]:
     """Pictures from a camera as they grow, developed, and the samples that each has; the last is that of ``still``.
 
+    poses: what is seen; first with few hairs that stand for all, for a coarse picture that comes soon, then with all
     Takes width, height, samples, colour, light, bounces and denoiser of the settings.
 
     Raises UserError for an unknown colour or light, and without hairs and bodies.
     """
     check_rig(settings.light)
     size, color = picture_size(settings, camera), hair_color(settings.color)
-    look: dict[str, Any] = {
-        "size": size,
-        "color": color,
-        "max_depth": settings.bounces + 1,
-        "rig": rig_around(settings, subject(pose), camera),
-    }
+
+    def scene_of(pose: Pose) -> Scene:
+        rig = rig_around(settings, subject(pose), camera)
+        return build_scene(
+            pose.bodies, pose.hairs, camera, size=size, color=color, max_depth=settings.bounces + 1, rig=rig
+        )
+
+    def picture(light: NDArray[np.floating]) -> Image.Image:
+        return developed(np.asarray(light, np.float32), settings.background)
+
     with using(settings.engine):
-        scene = build_scene(pose.bodies, pose.hairs, camera, **look)
-        for image, samples in trace_growing(scene, camera, size, settings.samples, denoise=settings.denoiser == "oidn"):
-            yield developed(np.asarray(image, np.float32), settings.background), samples
+        yield picture(trace_coarse(scene_of(next(poses)), camera, size)), 1
+        for light, samples in trace_growing(
+            scene_of(next(poses)), settings.samples, denoise=settings.denoiser == "oidn"
+        ):
+            yield picture(light), samples
 
 
 def check_denoiser(name: str) -> None:

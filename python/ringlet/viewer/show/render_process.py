@@ -5,13 +5,17 @@ from __future__ import annotations
 import pickle
 import subprocess
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
-from ringlet.picture.process import COMMAND, RenderStep, RenderTask
+from ringlet.data.camera import Camera
+from ringlet.data.errors import UserError
+from ringlet.data.picture import PictureSettings
+from ringlet.picture import Pose
+from ringlet.picture.process import COMMAND, RenderStep
 
 
 class RenderProcess:
-    """A process that loads the path tracer and waits for one task.
+    """A process that loads the path tracer and waits for one picture to take.
 
     It is started anew, since a forked one would share the threads and locks of the server.
     """
@@ -20,20 +24,41 @@ class RenderProcess:
         self._process = subprocess.Popen(COMMAND, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         self._ended = False
 
-    def run(self, task: RenderTask, seen: Callable[[RenderStep], None]) -> None:
-        """Runs the task on a thread; calls ``seen`` there with each step until the task ends or is cancelled."""
-        threading.Thread(target=self._run, args=(task, seen), daemon=True, name="render").start()
+    def run(
+        self, poses: Iterable[Pose], camera: Camera, settings: PictureSettings, seen: Callable[[RenderStep], None]
+    ) -> None:
+        """Takes a picture, and calls ``seen`` with each step of it until it ends or is cancelled.
+
+        poses: those of ``growing``, which are made on a thread
+        """
+        threading.Thread(target=self._feed, args=(poses, camera, settings, seen), daemon=True, name="pose").start()
+        threading.Thread(target=self._run, args=(seen,), daemon=True, name="render").start()
 
     def cancel(self) -> None:
         """Ends the process."""
         self._ended = True
         self._process.kill()
 
-    def _run(self, task: RenderTask, seen: Callable[[RenderStep], None]) -> None:
-        assert self._process.stdin is not None and self._process.stdout is not None
+    def _feed(
+        self, poses: Iterable[Pose], camera: Camera, settings: PictureSettings, seen: Callable[[RenderStep], None]
+    ) -> None:
+        assert self._process.stdin is not None
         try:
             with self._process.stdin as there:
-                pickle.dump(task, there)
+                pickle.dump((camera, settings), there)
+                for pose in poses:
+                    pickle.dump(pose, there)
+                    there.flush()
+        except OSError:
+            return  # it has ended, which its steps tell
+        except UserError as error:
+            if not self._ended:
+                seen(RenderStep(error=str(error)))
+            self.cancel()
+
+    def _run(self, seen: Callable[[RenderStep], None]) -> None:
+        assert self._process.stdout is not None
+        try:
             with self._process.stdout as steps:
                 while (step := pickle.load(steps)) is not None:
                     if self._ended:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from ringlet.api.hairs import build_hairs
 from ringlet.data.camera import Camera
+from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.picture import PictureSettings
 from ringlet.picture import Pose, PosedBody
@@ -15,12 +17,15 @@ from ringlet.picture.camera import SENSOR
 from ringlet.viewer import protocol
 from ringlet.viewer.project import Project
 from ringlet.viewer.publisher import SendQueue
+from ringlet.viewer.show.display_groom import DisplayGroom, shuffled_order
 from ringlet.viewer.show.lights import light_file
-from ringlet.viewer.show.render_process import RenderProcess, RenderStep, RenderTask
+from ringlet.viewer.show.render_process import RenderProcess, RenderStep
+from ringlet.viewer.show.scene import VisibleMesh
 from ringlet.viewer.show.viewport import Viewport
 from ringlet.viewer.wire import pack, trouble
 
 BOUNCES = 32  # light hair needs them
+FEW = 0.05  # of the hairs, in the first picture
 
 
 class Rendering:
@@ -48,7 +53,7 @@ class Rendering:
             light_turn=message.light_turn,
             bounces=BOUNCES,
         )
-        task = RenderTask(pose_of(viewport), camera_of(message, viewport.origin), settings)
+        camera, poses = camera_of(message, viewport.origin), poses_of(viewport.display, viewport.bodies)
         process, self._spare = self._spare or RenderProcess(), None
         self._running[page] = process
 
@@ -56,7 +61,7 @@ class Rendering:
             if self._running.get(page) is process:
                 page.put("rendered", _answer(message, step))
 
-        process.run(task, send)
+        process.run(poses, camera, settings, send)
         self._spare = RenderProcess()
 
     def cancel(self, page: SendQueue) -> None:
@@ -91,15 +96,25 @@ def camera_of(message: protocol.Render, origin: np.ndarray) -> Camera:
     return Camera(place, axes, distance, slopes, focal_length=1e-3 * message.focal_length)
 
 
-def pose_of(viewport: Viewport) -> Pose:
-    """What the viewport shows on side a: its bodies at rest, and all hairs of its groom with their colors."""
-    display = viewport.display
-    assert display is not None
-    bodies = [PosedBody(body.mesh, body.mesh.points) for body in viewport.bodies]
-    if display.hairs is None:
-        return Pose(bodies, display.groom.locks)
-    hairs = build_hairs(display.groom).curves
-    return Pose(bodies, replace(hairs, points=np.asarray(hairs.points)))
+def poses_of(display: DisplayGroom, bodies: Sequence[VisibleMesh]) -> Iterator[Pose]:
+    """What is seen: bodies at rest, and hairs of a groom with their colors, few that stand for all and then all."""
+    posed = [PosedBody(body.mesh, body.mesh.points) for body in bodies]
+    for fraction in (FEW, 1.0):
+        if display.hairs is None:
+            yield Pose(posed, thinned(display.groom.locks, fraction))
+        else:
+            hairs = build_hairs(display.groom, fraction=fraction, wider=True).curves
+            yield Pose(posed, replace(hairs, points=np.asarray(hairs.points)))
+
+
+def thinned(curves: Curves, fraction: float) -> Curves:
+    """A fraction of curves, as much wider."""
+    if fraction == 1.0 or not len(curves):
+        return curves
+    rows = np.sort(shuffled_order(len(curves))[: max(1, round(fraction * len(curves)))])
+    few = curves.take(rows)
+    widths = {name: values * (len(curves) / len(few)) for name, values in few.point.items() if name == "width"}
+    return replace(few, point={**few.point, **widths})
 
 
 def _answer(message: protocol.Render, step: RenderStep) -> bytes:
