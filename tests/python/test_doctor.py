@@ -17,7 +17,7 @@ def test_the_doctor_finds_this_installation_complete():
     assert {finding.state for finding in findings.values()} <= {"ok", "optional"}
     assert "known answers hold" in findings["simulation"].found
     assert "stopped" in findings["contact"].found
-    assert {"numpy", "scipy", "fastapi", "usd-core"} <= findings.keys()
+    assert {"numpy", "scipy", "server of the review", "usd-core"} <= findings.keys()
     assert "locks groomed" in findings["groom and USD"].found
     assert findings["picture"].state == "ok"
 

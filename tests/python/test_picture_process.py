@@ -21,4 +21,4 @@ def test_it_ends_with_its_input():
 
 def test_what_is_no_task_is_reported_as_an_error():
     steps = subprocess.run(COMMAND, input=pickle.dumps("no task"), capture_output=True, timeout=60).stdout
-    assert "AttributeError" in pickle.loads(steps).error
+    assert "ValueError" in pickle.loads(steps).error

@@ -10,6 +10,7 @@ import pytest
 from pages import page, read, serving
 from ringlet.data.pigment import curve_reflectance
 from ringlet.viewer.show import display_groom
+from ringlet.viewer.show.display_groom import spread_order
 from small_example import write_head
 from wear import SCARF, write_wear
 
@@ -179,9 +180,24 @@ def test_the_page_receives_the_colours_that_files_have(folder: Path):
     recipe.write_text(
         recipe.read_text() + '[color]\npreset = "brown"\nmelanin = { value = 0.8, ramp = [[0, 1], [1, 0.3]] }\n'
     )
-    hairs = make_hairs(ringlet.build_groom(recipe)).curves
+    made = make_hairs(ringlet.build_groom(recipe))
+    hairs, order = made.curves, spread_order(made.layout["first"])
     ends = curve_reflectance(hairs, "hairs").reshape(len(hairs), -1, 3)[:, [0, -1]]
-    order = np.argsort(hairs.ids % 10_000, kind="stable")
     shown = (colors["reflectance"].reshape(len(hairs), colors["stations"], 3) / 255.0) ** 4
     assert np.allclose(shown[:, [0, -1]], ends[order], rtol=0.05, atol=1e-4)
     assert white["reflectance"].min() > 200
+
+
+def test_some_hairs_in_a_row_are_a_part_of_each_lock_and_cover_its_cross_section():
+    counts = np.array([300, 60, 600, 300])
+    first = np.append(0, np.cumsum(counts))
+    order = spread_order(first)
+    assert sorted(order) == list(range(counts.sum()))
+    for part in np.split(order, 4):
+        for begin, count in zip(first, counts, strict=False):
+            number = part[(part >= begin) & (part < begin + count)] - begin
+            assert len(number) == pytest.approx(count / 4, abs=1)
+            angle = number * np.pi * (3.0 - np.sqrt(5.0))  # the spiral of a lock
+            places = np.sqrt(number / count)[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+            assert np.linalg.norm(places.mean(axis=0)) < 0.2
+            assert np.linalg.norm(places, axis=1).mean() == pytest.approx(2 / 3, abs=0.05)

@@ -49,11 +49,10 @@ def serve() -> None:
             mitsuba()
         try:
             camera, settings = pickle.load(sys.stdin.buffer)
-        except EOFError:
-            return
-        try:
             for image, samples in growing(_poses(), camera, settings):
                 send(RenderStep(_png(image), samples))
+        except EOFError:
+            return
         except Exception as error:
             send(RenderStep(error=failure("a picture could not be drawn", error)))
         send(None)

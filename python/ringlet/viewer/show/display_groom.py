@@ -22,6 +22,7 @@ from ringlet.viewer.project import Project
 from ringlet.viewer.show.maps import texture_of
 from ringlet.viewer.wire import pack
 
+IRRATIONAL = np.sqrt(2.0)  # no multiple of the angle between hairs on a spiral, which would choose a sector
 RAMPS = ("escaping", "relaxing", "tight", "opening")  # of the curl of hairs, along them
 
 # Arrays of the curl of hairs, where these only follow their lock.
@@ -279,12 +280,19 @@ def curves_message(side: str, curves: Curves) -> bytes:
 
 
 def spread_order(first: NDArray[np.integer]) -> NDArray[np.intp]:
-    """Order of hairs: the first of every lock, then the second of every lock, and so on; shape (hairs,).
+    """Order of hairs in which some that follow one another are as large a part of each lock; shape (hairs,).
+
+    They also cover its cross-section: hairs of a lock lie on a spiral, from its middle outwards, and are sorted by the
+    multiples of an irrational number.
 
     first: offsets of the locks in the list of hairs, shape (locks + 1,)
     """
-    number = np.arange(first[-1]) - np.repeat(first[:-1], np.diff(first))
-    return np.argsort(number, kind="stable")
+    counts = np.diff(first)
+    lock = np.repeat(np.arange(len(counts)), counts)
+    number = np.arange(first[-1]) - first[lock]
+    rank = np.empty(len(number))
+    rank[np.lexsort((number * IRRATIONAL % 1.0, lock))] = number
+    return np.argsort((rank + lock * IRRATIONAL % 1.0) / counts[lock], kind="stable")
 
 
 def shuffled_order(count: int) -> NDArray[np.intp]:
