@@ -67,7 +67,7 @@ class Names(Message):
 class Hairs(Message):
     """Hairs relative to their locks; see ``src/ringlet/groom/hairs.h`` for the formula.
 
-    Any prefix of the hairs is as large a part of each lock. ``profile``, ``hold``, ``pace``, ``blend`` and ``thinning`` are
+    Any prefix is as large a part of each lock. ``profile``, ``hold``, ``pace``, ``blend`` and ``thinning`` are
     functions along the hairs of each groom, one groom after another; ``group`` is the groom of a hair. ``frizz`` has
     ``knots`` × 2 numbers a hair; ``root`` is the offset from the lock's root to the hair's. The diameter is ``width``
     of the hair times ``thinning``. The arrays from ``slip`` on are those of the curl of hairs; empty where these only
