@@ -10,6 +10,7 @@ import difflib
 import json
 import os
 import re
+import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -30,6 +31,8 @@ from ringlet.io.usd.skinning import Skinning
 
 SURFACE, LIMIT, CAGE = "ringlet:surface", "limit", "cage"  # attribute of /groom, and its values
 NOT_TEXT = "it holds text that is not UTF-8"
+_OPENING = threading.Lock()  # OpenUSD crashes where a thread reloads a layer that another is opening
+_STAMPS: dict[str, tuple[int, ...]] = {}  # of the files of layers when they were read last, by identifier
 TICK = 0.1  # of the clock of a file system, at most [s]
 UNITS, RATES = (1e-9, 1e6), (1e-2, 1e5)  # bounds of metersPerUnit and of timeCodesPerSecond
 SUFFIXES = (".usd", ".usda", ".usdc", ".usdz")
@@ -77,30 +80,36 @@ def reading(path: Path | str, cage: bool | None = None) -> Iterator[Source]:
     if path.is_file() and not path.stat().st_size:
         raise UserError(f"{path}: is empty; write it again or choose another")
     with reading_more(path):
-        layers = _check_layers(path)
-        stage = Usd.Stage.Open(str(path))
-        del layers  # open until the stage has them
-        _reload(stage, path)
+        with _OPENING:
+            layers, held = _check_layers(path)
+            stage = Usd.Stage.Open(str(path))
+            del layers  # open until the stage has them
+            _reload(stage, path, held)
         _refuse_missing(stage, path)
         yield Source(path, stage, _space(stage, path), _reads_cages(stage) if cage is None else cage)
         record(path, *layer_files(stage))
 
 
-def _check_layers(path: Path) -> list[Sdf.Layer]:
-    """Opens the layers that a file is composed of; raises UserError for one that is damaged or no regular file."""
-    names, layers = [str(path)], []
+def _check_layers(path: Path) -> tuple[list[Sdf.Layer], set[str]]:
+    """Opens the layers that a file is composed of; returns them, and identifiers of those that were open before.
+
+    Raises UserError for one that is damaged or no regular file.
+    """
+    names, layers, held = [str(path)], [], set[str]()
     for name in names:  # grows while it is read
         check_bytes(name)
         with suppress(Tf.ErrorException):  # reported when the stage is opened
-            if Sdf.Layer.Find(name) and (copy := Sdf.Layer.OpenAsAnonymous(name)):
-                sound_prims(copy, name)  # another open stage holds the layer: what will be reloaded is checked apart
+            if layer := Sdf.Layer.Find(name):
+                held.add(layer.identifier)
+                if copy := Sdf.Layer.OpenAsAnonymous(name):
+                    sound_prims(copy, name)  # another open stage holds it: what will be reloaded is checked apart
             if layer := Sdf.Layer.FindOrOpen(name):
                 own = sound_prims(layer, name)
                 layers.append(layer)
                 assets = [*layer.GetCompositionAssetDependencies(), *_clip_files(own)]
                 found = [layer.ComputeAbsolutePath(asset) for asset in assets]
                 names += [file for file in found if file not in names]
-    return layers
+    return layers, held
 
 
 def _clip_files(specs: list[Sdf.PrimSpec]) -> Iterator[str]:
@@ -114,22 +123,32 @@ def _clip_files(specs: list[Sdf.PrimSpec]) -> Iterator[str]:
                 yield from map(str, Path(folder).glob(re.sub("#+", "*", pattern)))
 
 
-def _reload(stage: Usd.Stage, path: Path) -> None:
-    """Reloads the layers of a stage, since another open stage may share outdated ones.
+def _reload(stage: Usd.Stage, path: Path, held: set[str]) -> None:
+    """Reloads the layers of a stage that were open before, and whose files have changed since.
 
     Reloading a layer may change the set of used layers, so the set is queried again after each. Raises UserError for a
-    layer that another open stage holds, but whose file is gone. A file that was written a moment ago may have been
-    written twice within a tick of its clock.
+    layer that another open stage holds, but whose file is gone.
     """
     reloaded = set[str]()
     while pending := [layer for layer in stage.GetUsedLayers() if layer.identifier not in reloaded]:
-        reloaded.add(pending[0].identifier)
-        if pending[0].anonymous:
+        layer, name = pending[0], pending[0].identifier
+        reloaded.add(name)
+        if layer.anonymous:
             continue
-        file = Path(pending[0].realPath.split("[")[0])  # a layer in a package has its path in brackets
+        file = Path(layer.realPath.split("[")[0])  # a layer in a package has its path in brackets
         if not file.exists():
-            raise UserError(f"{path}: uses {pending[0].realPath}, which is not there; put it back")
-        pending[0].Reload(force=time.time() - file.stat().st_mtime < TICK)
+            raise UserError(f"{path}: uses {layer.realPath}, which is not there; put it back")
+        stamp, before = _stamp(file), _STAMPS.get(name)
+        _STAMPS[name] = stamp
+        if name in held and stamp != before:
+            # One that other code opened is known by its time alone, which two writes within a tick leave as it is.
+            layer.Reload(force=before is not None or time.time() - file.stat().st_mtime < TICK)
+
+
+def _stamp(file: Path) -> tuple[int, ...]:
+    """What changes with a file."""
+    status = file.stat()
+    return status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns
 
 
 def _reads_cages(stage: Usd.Stage) -> bool:
