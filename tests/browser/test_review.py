@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from review import Review, different
-from ringlet.viewer.show.display_groom import spread_order
+from ringlet.groom.thinning import spread
 from test_several_grooms import SEVERAL
 
 from ringlet import build_groom, build_hairs
@@ -47,7 +47,7 @@ def test_gpu_hairs_equal_those_of_the_core(opened: Any, folder: Path, curl: str)
     count, points = len(hairs.curves), int(hairs.curves.counts[0])
     read = review.get("Array.from(ringlet.viewer.hair.a.read(ringlet.viewer.renderer, 1e6))")
     drawn = np.array(read).reshape(count, points, 4)
-    order = spread_order(hairs.layout["first"])
+    order = spread(np.diff(hairs.layout["first"]))
     expected = hairs.curves.points.reshape(count, points, 3)[order]
     assert np.abs(drawn[:, :, :3] - expected).max() < 2e-6
     widths = hairs.curves.point["width"].reshape(count, points)[order]
@@ -68,7 +68,7 @@ def test_gpu_hairs_of_several_grooms_equal_those_of_the_core(opened: Any, folder
     hairs = lay_hairs(groom)
     points = hairs.deformed(groom.locks.points, groom.scalp.points).reshape(len(hairs.curves), -1, 3)
     lock = hairs.curves.curve["lock"]
-    order = spread_order(np.append(np.searchsorted(lock, np.unique(lock)), len(lock)))
+    order = spread(np.bincount(lock))
     read = review.get("Array.from(ringlet.viewer.hair.a.read(ringlet.viewer.renderer, 1e6))")
     drawn = np.array(read).reshape(*points.shape[:2], 4)
     assert np.abs(drawn[:, :, :3] - points[order]).max() < 2e-6

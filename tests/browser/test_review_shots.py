@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 from review import Review, different
-from ringlet.viewer.show.display_groom import spread_order
+from ringlet.groom.thinning import spread
 from wear import SCARF, write_roofed, write_wear
 
 import ringlet
@@ -25,7 +25,7 @@ def test_gpu_hairs_stay_below_a_cloth_like_those_of_the_core(opened: Any, folder
     count, number = len(hairs.curves), int(hairs.curves.counts[0])
     read = review.get("Array.from(ringlet.viewer.hair.a.read(ringlet.viewer.renderer, 1e6))")
     drawn = np.array(read).reshape(count, number, 4)[:, :, :3]
-    order = spread_order(hairs.layout["first"])
+    order = spread(np.diff(hairs.layout["first"]))
     kept = ringlet.io.read_hairs(folder / "hair.usdc", 1.0).points.reshape(count, number, 3)[order]
     assert hairs.curves.points[:, 1].max() > top + 1e-3
     assert drawn[..., 1].max() < top

@@ -10,25 +10,10 @@ from pathlib import Path
 
 import pytest
 from commands import refused, run
+from ringlet.cli.app import COMMANDS
 from ringlet.cli.progress import shown_progress
 
 import ringlet
-
-COMMANDS = [
-    "demo",
-    "groom",
-    "edit",
-    "check",
-    "loft",
-    "sim",
-    "wedge",
-    "farm",
-    "hair",
-    "render",
-    "validate",
-    "bench",
-    "schema",
-]
 
 
 @pytest.mark.parametrize("command", COMMANDS)

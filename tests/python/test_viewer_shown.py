@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from pages import page, read, serving
 from ringlet.data.pigment import curve_reflectance
+from ringlet.groom.thinning import spread
 from ringlet.viewer.show import display_groom
-from ringlet.viewer.show.display_groom import spread_order
 from small_example import write_head
 from wear import SCARF, write_wear
 
@@ -181,7 +181,7 @@ def test_the_page_receives_the_colours_that_files_have(folder: Path):
         recipe.read_text() + '[color]\npreset = "brown"\nmelanin = { value = 0.8, ramp = [[0, 1], [1, 0.3]] }\n'
     )
     made = make_hairs(ringlet.build_groom(recipe))
-    hairs, order = made.curves, spread_order(made.layout["first"])
+    hairs, order = made.curves, spread(np.diff(made.layout["first"]))
     ends = curve_reflectance(hairs, "hairs").reshape(len(hairs), -1, 3)[:, [0, -1]]
     shown = (colors["reflectance"].reshape(len(hairs), colors["stations"], 3) / 255.0) ** 4
     assert np.allclose(shown[:, [0, -1]], ends[order], rtol=0.05, atol=1e-4)
@@ -191,7 +191,7 @@ def test_the_page_receives_the_colours_that_files_have(folder: Path):
 def test_some_hairs_in_a_row_are_a_part_of_each_lock_and_cover_its_cross_section():
     counts = np.array([300, 60, 600, 300])
     first = np.append(0, np.cumsum(counts))
-    order = spread_order(first)
+    order = spread(counts)
     assert sorted(order) == list(range(counts.sum()))
     for part in np.split(order, 4):
         for begin, count in zip(first, counts, strict=False):

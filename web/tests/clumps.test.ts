@@ -38,14 +38,14 @@ test("hairs of a lock take away as much light as the shadow of the lock is wide"
       end = place + WIDTH / 2;
     }
   }
-  const left = new Clumps(lock()).left([])[0];
-  expect(left).toBeLessThan(0.6); // they cover one another
-  expect(Math.abs(left / (shadow / (HAIRS * WIDTH)) - 1)).toBeLessThan(0.06);
+  const index = new Clumps(lock()).indices([])[0];
+  expect(index).toBeLessThan(0.6); // they cover one another
+  expect(Math.abs(index / (shadow / (HAIRS * WIDTH)) - 1)).toBeLessThan(0.06);
 });
 
 test("hairs that slip around the coil of their lock shade each other less, and a single hair nothing", () => {
-  const [coiled, slipped] = [new Clumps(lock()), new Clumps(lock(0.25))].map((clumps) => clumps.left([16e-6])[0]);
+  const [coiled, slipped] = [new Clumps(lock()), new Clumps(lock(0.25))].map((clumps) => clumps.indices([16e-6])[0]);
   expect(slipped).toBeGreaterThan(coiled + 0.2);
   const alone = { ...lock(), count: 1 };
-  expect(new Clumps(alone).left([])[0]).toBe(1);
+  expect(new Clumps(alone).indices([])[0]).toBe(1);
 });

@@ -74,14 +74,14 @@ def measure_hairs(
 class _Motion(NamedTuple):
     """What carries hairs: ``frame`` (None at rest), locks, scalp and surfaces, as ``Hairs.deformed`` takes them.
 
-    beside: whether the frame is one before or after those that are asked for
+    adjacent: whether the frame is the last before, or the first after, the range that is asked for
     """
 
     frame: float | None
     locks: NDArray[np.floating]
     scalp: NDArray[np.floating]
     surfaces: list[tuple[NDArray, NDArray]]
-    beside: bool = False
+    adjacent: bool = False
 
 
 @recorded()
@@ -119,7 +119,7 @@ def write_hairs(
     lod:        writes the levels of detail ``LEVELS`` as variants ``LOD0``, ``LOD1``, … of ``/groom/hairs``
     on_demand:  writes what a renderer makes hairs of, in place of their points
     velocities: writes those of hairs in motion too, in units per second, which doubles the size of the file; at both
-                ends from the frames beside them in the cache
+                ends by the adjacent frames of the cache
     variant:    of the groom, in place of the one that is selected in it, or that the cache was made of
     measures:   receives the entries of ``measure_hairs``; ``fraction``, where a camera chose it; and of hairs in motion
                 with points ``length_change``, the largest fraction by which one gets longer or shorter than in the
@@ -169,7 +169,7 @@ def write_hairs(
     under, written = Path(groom if cache is None else cache), 0
     if expanded:
         under = io.layer_under_on_demand(groom)
-    with _motion(groom, cache, locks, frames, beside=velocities) as (total, moments):
+    with _motion(groom, cache, locks, frames, adjacent=velocities) as (total, moments):
         if on_demand:
             with io.OnDemandWriter(Path(path), locks, finest, under) as writer:
                 writer.add(None, rest.locks, rest.scalp)
@@ -186,13 +186,13 @@ def write_hairs(
                 for at in moments:
                     for level, hairs in enumerate(levels):
                         moved = hairs.deformed(at.locks, at.scalp, surfaces=at.surfaces)
-                        if at.beside and at.frame is not None:
-                            writer.add_beside(at.frame, moved, level=level)
+                        if at.adjacent and at.frame is not None:
+                            writer.add_adjacent(at.frame, moved, level=level)
                             continue
                         writer.add(at.frame, moved, around=at.scalp, level=level)
                         if level == 0 and at.frame is not None:
                             lengths.add(at.frame, moved)
-                    written = written if at.beside else _reported(written, total, progress)
+                    written = written if at.adjacent else _reported(written, total, progress)
                 if measures is not None and written:
                     measures |= {"length_change": lengths.change, "length_change_frame": lengths.frame}
     return {
@@ -231,11 +231,11 @@ def _motion(
     locks: Groom,
     frames: tuple[int, int] | None,
     *,
-    beside: bool = False,
+    adjacent: bool = False,
 ) -> Iterator[tuple[int, Iterator[_Motion]]]:
     """The number of frames of a cache, and what carries hairs at each; none without a cache.
 
-    beside: also gives the frames of the cache before the first and after the last, which do not count
+    adjacent: also gives the frames adjacent to the range, which do not count
     """
     if cache is None:
         yield 0, iter(())
@@ -244,10 +244,10 @@ def _motion(
         chosen = moved.within(frames if frames is not None else _made_frames(groom))
         all_frames = moved.frames
         before, after = (all_frames[all_frames < chosen[0]][-1:], all_frames[all_frames > chosen[-1]][:1])
-        given = np.concatenate([before, chosen, after]) if beside else chosen
+        given = np.concatenate([before, chosen, after]) if adjacent else chosen
         clip = scalp_clip(locks, (math.floor(given[0]), math.ceil(given[-1])))
         moments = (_motion_at(cache, moved, locks, clip, float(frame)) for frame in given)
-        yield len(chosen), (at._replace(beside=at.frame not in chosen) for at in moments)
+        yield len(chosen), (at._replace(adjacent=at.frame not in chosen) for at in moments)
 
 
 def _made_frames(groom: Path | str) -> tuple[int, int] | None:

@@ -40,7 +40,7 @@ def _joined_curl(each: list[Layout], counts: list[int], knots: int) -> Layout:
     """Curls of the hairs; zero where those of a groom follow their lock alone."""
     sample = next((of["curl"] for of in each if of["curl"]), None)
     if sample is None:
-        return {"curl": {}, "window": np.empty(0, np.int32)}
+        return {"curl": {}}
 
     def of_groom(of: Layout, count: int, name: str) -> NDArray:
         points = len(of["profile"])
@@ -55,7 +55,7 @@ def _joined_curl(each: list[Layout], counts: list[int], knots: int) -> Layout:
     curl = {
         name: np.concatenate([of_groom(of, n, name) for of, n in zip(each, counts, strict=True)]) for name in sample
     }
-    return {"curl": curl, "window": joined_windows([(of, len(of["axis"])) for of in each])}
+    return {"curl": curl}
 
 
 def joined_windows(each: list[tuple[Layout, int]]) -> NDArray[np.integer]:

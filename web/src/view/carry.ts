@@ -265,9 +265,9 @@ export class Carry {
     this.put("lockB", table.b);
     this.put("lockU", table.u);
     this.put("lockV", table.v);
-    this.put("hairLeft", this.clumps.left(squaredRadii(table)));
+    this.put("hairClumping", this.clumps.indices(squaredRadii(table)));
     // Locks with the frames of their coils follow the hairs that need them: until then these follow their lock.
-    this.material.uniforms["curled"].value = this.hairs.coil.length > 0 && table.u.length > 4;
+    this.material.uniforms["curled"].value = this.hairs.coil.length > 0 && table.curled;
     this.setPlaces(table);
   }
 

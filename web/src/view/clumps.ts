@@ -1,4 +1,4 @@
-// How hairs of a lock shade each other: light meets the lock as a tube, and hairs behind others in it take little away.
+// The clumping index of hairs: light meets a lock as a tube, and hairs behind others in it take little away (Nilson 1971).
 
 import type { Hairs } from "../protocol";
 
@@ -29,20 +29,20 @@ export class Clumps {
     [this.number, this.widths, this.offsets, this.slips] = [number, widths, offsets, slips];
   }
 
-  /** The part of its extinction that each hair is left with in the tube of its lock, (1 - e^-τ) / τ.
+  /** The factor on the extinction of each hair in the tube of its lock, (1 - e^-τ) / τ.
    *
    * τ is the optical depth of the tube: the widths of its hairs by its own width, that of a disk with the mean square of
    * their distances from the lock. Tubes finer than a voxel let more light pass than hairs in no order.
    * radii: mean square radius of each lock's coil [m²]
    */
-  left(radii: ArrayLike<number>): Float32Array {
-    const parts = this.widths.map((widths, l) => {
+  indices(radii: ArrayLike<number>): Float32Array {
+    const ofLocks = this.widths.map((widths, l) => {
       const depth = widths / Math.max(Math.sqrt(8 * (this.offsets[l] + this.slips[l] * (radii[l] ?? 0))), 1e-6);
       return this.number[l] < 2 || depth < 1e-3 ? 1 : -Math.expm1(-depth) / depth;
     });
-    const left = new Float32Array(this.hairs.count);
-    for (let i = 0; i < left.length; i++) left[i] = parts[this.hairs.lock[i]];
-    return left;
+    const result = new Float32Array(this.hairs.count);
+    for (let i = 0; i < result.length; i++) result[i] = ofLocks[this.hairs.lock[i]];
+    return result;
   }
 }
 

@@ -31,7 +31,7 @@ precision highp sampler2D;
 ${LOOKUP}
 ${TONE}
 uniform highp sampler2D hairPoints;
-uniform highp sampler2D hairLeft; // of the extinction in a lock, four hairs a texel
+uniform highp sampler2D hairClumping; // clumping index, four hairs a texel
 uniform int points, every, firstHair;
 uniform vec3 origin;
 uniform ivec3 counts;
@@ -51,7 +51,7 @@ void main() {
     way += distance(before, next);
   }
   ivec3 cell = ivec3(floor((here.xyz - origin) / voxel));
-  float projected = lookup(hairLeft, hair / 4)[hair % 4] * 0.7853982 * here.w * way / (voxel * voxel * voxel);
+  float projected = lookup(hairClumping, hair / 4)[hair % 4] * 0.7853982 * here.w * way / (voxel * voxel * voxel);
   vec3 along = normalize(next - here.xyz + vec3(0.0, 1e-9, 0.0));
   vec3 value = tangents ? along : toneOf(hair, float(k) / float(points - 1));
   mass = projected / share * vec4(value, 1.0);

@@ -105,7 +105,7 @@ export class Hair {
   ) {
     this.shared = {
       hairPoints: { value: null },
-      hairLeft: { value: null },
+      hairClumping: { value: null },
       points: { value: 2 },
       hairColor: { value: null },
       stations: { value: 0 },
@@ -378,7 +378,7 @@ export class Hair {
     if (!this.carry || !this.table) return;
     yield* this.carry.update(renderer, Math.min(this.count, Math.ceil(drawings * fraction * this.count) + 1), slices);
     this.shared["hairPoints"].value = this.carry.points;
-    this.shared["hairLeft"].value = this.carry.texture("hairLeft");
+    this.shared["hairClumping"].value = this.carry.texture("hairClumping");
     for (const name of ["hairPlace", "lockPlace", "lockPoint"])
       this.material.uniforms[name].value = this.carry.texture(name);
   }

@@ -7,6 +7,8 @@ export interface LockTable {
   a: Float32Array;
   b: Float32Array;
   places: Float32Array; // of each lock: its first row, the number of its last point, how it is marked, the first vertex of its rod
+  /** Whether there are frames of centre lines. */
+  curled: boolean;
   u: Float32Array; // frame of the centre line of each lock's coil; the fourth number is the lock's place in it
   v: Float32Array;
 }
@@ -19,6 +21,7 @@ export function lockTable(points: Float32Array, offsets: Int32Array, axis: Float
   const rows = points.length / 3 + 3 * locks;
   const table = {
     rows,
+    curled,
     point: new Float32Array(4 * rows),
     a: new Float32Array(4 * rows),
     b: new Float32Array(4 * rows),
@@ -39,8 +42,8 @@ export function lockTable(points: Float32Array, offsets: Int32Array, axis: Float
 }
 
 /** Mean square radius of each lock's coil [m²]; none without the frames of centre lines. */
-export function squaredRadii({ places, u, v }: LockTable): Float64Array {
-  return Float64Array.from({ length: u.length > 4 ? places.length / 4 : 0 }, (_, lock) => {
+export function squaredRadii({ places, u, v, curled }: LockTable): Float64Array {
+  return Float64Array.from({ length: curled ? places.length / 4 : 0 }, (_, lock) => {
     const [first, last] = [places[4 * lock], places[4 * lock] + places[4 * lock + 1]];
     let sum = 0;
     for (let row = first; row <= last; row++) sum += u[4 * row + 3] ** 2 + v[4 * row + 3] ** 2;

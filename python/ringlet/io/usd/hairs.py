@@ -121,10 +121,10 @@ class HairWriter(StreamWriter):
         bind_hair_material(prim, hairs, self._stage)
         return curves
 
-    def add_beside(self, frame: float, points: NDArray, *, level: int = 0) -> None:
+    def add_adjacent(self, frame: float, points: NDArray, *, level: int = 0) -> None:
         """Takes the frame before the first, or after the last, of a level of detail [m], for the velocities there."""
         for prim, _, rows in self._prims[level]:
-            self.put_beside(prim, frame, points[rows])
+            self.put_adjacent(prim, frame, points[rows])
 
     def add(self, frame: float | None, points: NDArray, *, around: NDArray | None = None, level: int = 0) -> None:
         """Adds a frame of a level of detail, or the rest pose for None.

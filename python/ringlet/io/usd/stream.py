@@ -38,7 +38,7 @@ class StreamWriter:
         self._unsaved = 0
         self._place_of_prim: dict[Usd.Prim, Place] = {}
         self._velocities_of_prim: dict[Usd.Prim, Velocities] = {}
-        self._before_of_prim: dict[Usd.Prim, tuple[float, NDArray]] = {}
+        self._adjacent_of_prim: dict[Usd.Prim, tuple[float, NDArray]] = {}
 
     def begin(self) -> Usd.Stage:
         """Opens a temporary file beside ``path`` and returns its stage over the groom.
@@ -85,21 +85,21 @@ class StreamWriter:
             velocities = self._velocities_of_prim.get(prim.GetPrim())
             if velocities is None:
                 velocities = self._velocities_of_prim[prim.GetPrim()] = Velocities(prim, self.space.fps)
-                if before := self._before_of_prim.get(prim.GetPrim()):
-                    velocities.add(before[0], self._beside(place, before[1]), beside=True)
+                if before := self._adjacent_of_prim.get(prim.GetPrim()):
+                    velocities.add(before[0], self._adjacent(place, before[1]), adjacent=True)
             velocities.add(float(frame), np.array(value))
         self.record(frame, points.size * 4)
         return value
 
-    def put_beside(self, prim: UsdGeom.BasisCurves, frame: float, points: NDArray) -> None:
+    def put_adjacent(self, prim: UsdGeom.BasisCurves, frame: float, points: NDArray) -> None:
         """Takes the points [m] of the frame before the first, or after the last, for the velocities there."""
         if velocities := self._velocities_of_prim.get(prim.GetPrim()):
             place = self._place_of_prim[prim.GetPrim()]
-            velocities.add(frame, self._beside(place, points), beside=True)
+            velocities.add(frame, self._adjacent(place, points), adjacent=True)
         else:
-            self._before_of_prim[prim.GetPrim()] = frame, points
+            self._adjacent_of_prim[prim.GetPrim()] = frame, points
 
-    def _beside(self, place: Place, points: NDArray) -> NDArray[np.float32]:
+    def _adjacent(self, place: Place, points: NDArray) -> NDArray[np.float32]:
         """Points [m] relative to where the frame next to them has its origin, in the space of the prim."""
         return np.array(local_points(points, place.origin, self.space))
 

@@ -21,15 +21,15 @@ class Velocities:
     def __init__(self, prim: UsdGeom.PointBased, fps: float) -> None:
         self._prim, self._fps = prim, fps
         self._frames: list[tuple[float, NDArray[np.float32]]] = []
-        self._beside: set[float] = set()
+        self._adjacent: set[float] = set()
 
-    def add(self, frame: float, points: NDArray[np.float32], *, beside: bool = False) -> None:
+    def add(self, frame: float, points: NDArray[np.float32], *, adjacent: bool = False) -> None:
         """Adds the points of a frame in the space of the prim, shape (n, 3).
 
-        beside: a frame before or after those of the file, which has no velocities there itself
+        adjacent: a frame adjacent to the range of the file, which has no velocities there itself
         """
-        if beside:
-            self._beside.add(frame)
+        if adjacent:
+            self._adjacent.add(frame)
         self._frames = [*self._frames, (frame, points)][-3:]
         if len(self._frames) > 1:
             self._write(self._frames[-2][0], self._frames[0], self._frames[-1])
@@ -40,7 +40,7 @@ class Velocities:
             self._write(self._frames[-1][0], self._frames[-2], self._frames[-1])
 
     def _write(self, frame: float, one: tuple[float, NDArray], other: tuple[float, NDArray]) -> None:
-        if frame in self._beside:
+        if frame in self._adjacent:
             return
         seconds = (other[0] - one[0]) / self._fps
         rate = (np.asarray(other[1], np.float64) - one[1]) / seconds

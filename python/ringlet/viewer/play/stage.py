@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from ringlet.data.mesh import Clip
 from ringlet.groom import AnyHairs, Groom
+from ringlet.groom.thinning import spread
 from ringlet.sim.motion import Motion
 from ringlet.viewer import protocol
 from ringlet.viewer.show import overlays
-from ringlet.viewer.show.display_groom import spread_order
 from ringlet.viewer.show.scene import FrameState, VisibleMesh
 from ringlet.viewer.wire import pack
 
@@ -53,7 +53,7 @@ class Stage:
         bodies = [body.at(frame, state) for body in self.bodies]
         if self.hairs is not None:
             deformation = self.hairs.deformation(corners)
-            order = spread_order(deformation["first"])
+            order = spread(np.diff(deformation["first"]))
             axis, root = deformation["axis"], deformation["root"][order]
             surfaces = [(at, body.mesh.triangles) for at, body in zip(bodies, self.bodies, strict=True)]
             with self._lock:

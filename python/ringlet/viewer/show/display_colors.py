@@ -27,8 +27,9 @@ from ringlet.data.pigment import (
 from ringlet.groom import AnyHairs, JoinedHairs, grooms_of, hair_colors
 from ringlet.groom.joined_hairs import IDS_PER_GROOM
 from ringlet.groom.several import WITHOUT
+from ringlet.groom.thinning import spread
 from ringlet.viewer import protocol
-from ringlet.viewer.show.display_groom import shuffled_order, spread_order
+from ringlet.viewer.show.display_groom import shuffled_order
 from ringlet.viewer.wire import pack
 
 STATIONS = 24  # of a hair whose colour varies along it
@@ -54,7 +55,7 @@ def message(side: str, groom: Groom, hairs: AnyHairs | None) -> bytes:
         curves, order = groom.locks, shuffled_order(len(groom.locks))
         colors = _at_stations(curves, curve_reflectance(curves, "hairs"))
     else:
-        order = spread_order(offsets_from_counts(np.bincount(hairs.curves.curve["lock"], minlength=len(groom.locks))))
+        order = spread(np.bincount(hairs.curves.curve["lock"], minlength=len(groom.locks)))
         curves, colors = _hair_reflectances(groom, hairs)
     stations = 0 if colors is None else len(colors) // max(len(curves), 1)
     values = np.empty(0) if colors is None else colors.reshape(len(curves), stations, 3)[order]

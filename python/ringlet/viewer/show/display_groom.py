@@ -17,12 +17,12 @@ from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
 from ringlet.groom import AnyHairs, Groom, HairMemory, Memory, Recipe, join_grooms, lay_hairs, make_groom, recipes_of
 from ringlet.groom.operators import Collide, Context, Drawn
+from ringlet.groom.thinning import spread
 from ringlet.viewer import protocol
 from ringlet.viewer.project import Project
 from ringlet.viewer.show.maps import texture_of
 from ringlet.viewer.wire import pack
 
-IRRATIONAL = np.sqrt(2.0)  # no multiple of the angle between hairs on a spiral, which would choose a sector
 RAMPS = ("escaping", "relaxing", "tight", "opening")  # of the curl of hairs, along them
 
 # Arrays of the curl of hairs, where these only follow their lock.
@@ -222,7 +222,7 @@ def hairs_message(side: str, hairs: AnyHairs, scalp: Mesh) -> bytes:
     layout = hairs.deformation(scalp.points)
     group = layout.get("group", np.zeros(len(hairs.curves), np.uint8))
     count, points = len(hairs.curves), int(hairs.curves.counts[0])
-    order = spread_order(layout["first"])
+    order = spread(np.diff(layout["first"]))
     widths = hairs.curves.point["width"].reshape(count, points)
     widest = widths.max(axis=1)
     unblended = {"other": np.zeros(count), "share": np.zeros(count)}
@@ -277,22 +277,6 @@ def curves_message(side: str, curves: Curves) -> bytes:
         thinning=np.linspace(1.0, 0.4, points),
         **NO_CURL,
     )
-
-
-def spread_order(first: NDArray[np.integer]) -> NDArray[np.intp]:
-    """Order of hairs in which some that follow one another are as large a part of each lock; shape (hairs,).
-
-    They also cover its cross-section: hairs of a lock lie on a spiral, from its middle outwards, and are sorted by the
-    multiples of an irrational number.
-
-    first: offsets of the locks in the list of hairs, shape (locks + 1,)
-    """
-    counts = np.diff(first)
-    lock = np.repeat(np.arange(len(counts)), counts)
-    number = np.arange(first[-1]) - first[lock]
-    rank = np.empty(len(number))
-    rank[np.lexsort((number * IRRATIONAL % 1.0, lock))] = number
-    return np.argsort((rank + lock * IRRATIONAL % 1.0) / counts[lock], kind="stable")
 
 
 def shuffled_order(count: int) -> NDArray[np.intp]:

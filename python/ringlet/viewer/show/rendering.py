@@ -101,13 +101,13 @@ def poses_of(display: DisplayGroom, bodies: Sequence[VisibleMesh]) -> Iterator[P
     posed = [PosedBody(body.mesh, body.mesh.points) for body in bodies]
     for fraction in (FEW, 1.0):
         if display.hairs is None:
-            yield Pose(posed, thinned(display.groom.locks, fraction))
+            yield Pose(posed, fewer(display.groom.locks, fraction))
         else:
             hairs = build_hairs(display.groom, fraction=fraction, wider=True).curves
             yield Pose(posed, replace(hairs, points=np.asarray(hairs.points)))
 
 
-def thinned(curves: Curves, fraction: float) -> Curves:
+def fewer(curves: Curves, fraction: float) -> Curves:
     """A fraction of curves, as much wider."""
     if fraction == 1.0 or not len(curves):
         return curves
