@@ -123,12 +123,12 @@ nb::tuple sunk_places(const Array3<double> &points, const Array1<int> &offsets, 
 }
 
 // (first points of the two segments (k, 2), midpoint between them (k, 3), distance (k,)) of overlapping pairs.
-nb::tuple crossings(const Array3<double> &points, const Array1<int> &offsets, double thickness) {
+nb::tuple crossings(const Array3<double> &points, const Array1<int> &offsets, const Array1<double> &radius) {
     const CurveView curves{vectors<Vec3>(points), view(offsets)};
     std::vector<Overlap> found;
     {
         nb::gil_scoped_release release;
-        found = find_overlaps(curves, thickness);
+        found = find_overlaps(curves, view(radius));
     }
     const size_t count = found.size();
     std::vector<std::array<int, 2>> pair;
@@ -236,8 +236,9 @@ void bind_groom(nb::module_ &module) {
                "Points of curves that are moved out of Solids, to a distance of margin [m]; roots stay.");
     module.def("sunk_places", &sunk_places, "points"_a, "offsets"_a, "bodies"_a, "root_depth"_a, "root_length"_a,
                "Places of curves inside Solids: body (k,), point before it (k,), triangle (k,), place (k, 3), depth (k,) [m].");
-    module.def("crossings", &crossings, "points"_a, "offsets"_a, "thickness"_a,
-               "Pairs of segments nearer than a thickness [m]: first points (k, 2), midpoints (k, 3), distances (k,) [m].");
+    module.def("crossings", &crossings, "points"_a, "offsets"_a, "radius"_a,
+               "Pairs of segments nearer than the sum of the radii (n,) at their first points [m]: first points (k, 2), "
+               "midpoints (k, 3), distances (k,) [m].");
     nb::class_<Repair>(module, "Repair", "Moves curves out of Solids and out of one another; see groom/repair.h.")
         .def(
             "__init__",

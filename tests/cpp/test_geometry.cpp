@@ -135,7 +135,9 @@ BOOST_AUTO_TEST_CASE(near_segments_agree_with_a_test_of_every_pair) {
         }
         offsets.push_back(static_cast<int>(points.size()));
     }
-    const double within = 0.08, along = 0.2;
+    const double along = 2.5;
+    std::vector<double> radius;
+    for (size_t i = 0; i < points.size(); ++i) radius.push_back(0.06 * in(random));
     std::vector<std::array<int, 2>> expected;
     for (int i = 0; i < 20; ++i)
         for (int j = i; j < 20; ++j)
@@ -144,11 +146,12 @@ BOOST_AUTO_TEST_CASE(near_segments_agree_with_a_test_of_every_pair) {
                     double between = 0.0;
                     for (int k = a + 1; i == j && k < b; ++k) between += (points[k + 1] - points[k]).norm();
                     const double distance2 = closest_edge_edge(points[a], points[a + 1], points[b], points[b + 1]).distance2;
-                    if ((i != j || between > along) && distance2 < within * within) expected.push_back({a, b});
+                    const double touching = radius[a] + radius[b];
+                    if ((i != j || between > along * touching) && distance2 < touching * touching) expected.push_back({a, b});
                 }
     std::sort(expected.begin(), expected.end());
     BOOST_TEST(expected.size() > 50u);
-    BOOST_TEST((near_segments({points, offsets}, within, along) == expected));
+    BOOST_TEST((near_segments({points, offsets}, radius, along) == expected));
 }
 
 BOOST_AUTO_TEST_CASE(the_signed_distance_is_negative_behind_faces_edges_and_corners) {

@@ -282,13 +282,14 @@ BOOST_AUTO_TEST_CASE(repair_frees_curves_that_pass_through_a_body_and_one_anothe
     const CurveView curves{points, offsets};
     const Allowed allowed{.thickness = 1e-3};
     BOOST_TEST(!find_penetrations(curves, {&body}, allowed).empty());
-    BOOST_TEST(!find_overlaps(curves, 1e-3).empty());
+    const std::vector<double> radius(points.size(), 5e-4);
+    BOOST_TEST(!find_overlaps(curves, radius).empty());
     Repair repair(curves, {&body}, allowed);
     for (int round = 0; round < 100 && repair.round() > 0; ++round) {
     }
     const std::vector<Vec3> repaired = repair.points();
     const CurveView after{repaired, offsets};
-    BOOST_TEST(find_overlaps(after, 1e-3).empty());
+    BOOST_TEST(find_overlaps(after, radius).empty());
     for (const Penetration &place : find_penetrations(after, {&body}, allowed)) BOOST_TEST(place.point == -1);
     for (int i = 0; i < 6; ++i) BOOST_TEST(after[i][0] == curves[i][0]);
 }

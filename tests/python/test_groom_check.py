@@ -94,6 +94,16 @@ def test_locks_with_a_radius_of_their_own_count_at_it():
     assert len(check_groom(groom)) == 0
 
 
+def test_single_hairs_beside_a_loc_are_only_paired_where_they_touch():
+    hairs = [up(11, 0.01, x, z) for x in np.arange(-8, 9) * 1e-3 for z in np.arange(-8, 9) * 1e-3]
+    groom = groom_of([up(11, 0.01), *hairs])
+    groom.locks.curve[STRAND_RADIUS] = np.array([0.003] + [0.0] * len(hairs), np.float32)
+    radius = np.repeat(0.85 * groom.locks.curve[STRAND_RADIUS].astype(float) + 5e-5, groom.locks.counts)
+    pair = _core.crossings(groom.locks.points, groom.locks.offsets, radius)[0]
+    assert (pair.min(axis=1) < 11).all() and len(pair) < 11 * 11 * 9 * np.pi  # each with the loc
+    assert check_groom(groom).summary()["hair"]["locks"] == 1 + 21  # those within 2.6 mm of its middle
+
+
 def test_the_command_says_how_thick_locks_with_a_radius_of_their_own_are(tmp_path):
     groom = groom_of([up(), up(x=0.004)])
     bound = groom.locks.curve["root_triangle"], groom.locks.curve["root_barycentric"]

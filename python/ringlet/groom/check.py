@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import KDTree
 
 from ringlet import _core
 from ringlet.data.curves import Curves
@@ -151,7 +150,8 @@ def find(locks: Curves, bodies: Bodies, allowed: Allowed) -> Findings:
     on_scalp[on_scalp] = bodies.on_scalp[triangle[on_scalp]]
     for kind, rows in (("scalp", on_scalp), ("body", ~on_scalp)):
         findings.add(kind, point[rows], place[rows], depth[rows])
-    pair, place, distance = _core.crossings(*packed(locks), allowed.thickness)
+    lines = np.full(len(locks.points), 0.5 * allowed.thickness)
+    pair, place, distance = _core.crossings(*packed(locks), lines)
     findings.add("hair", pair[:, 0], place, allowed.thickness - distance, pair[:, 1])
     _add_thick(findings, allowed)
     return findings
@@ -162,28 +162,15 @@ def _add_thick(findings: Findings, allowed: Allowed) -> None:
 
     Two places that the skin holds do not count: they stay as they are.
     """
-    radius = np.maximum(allowed.own_radius * own_radii(findings.locks), 0.5 * allowed.thickness)
-    widest = 2.0 * float(radius.max(initial=0.0))
-    if widest <= allowed.thickness:
+    locks = findings.locks
+    radius = np.maximum(allowed.own_radius * own_radii(locks), 0.5 * allowed.thickness)
+    if 2.0 * radius.max(initial=0.0) <= allowed.thickness:
         return
-    rows = _near(findings.locks, radius > 0.5 * allowed.thickness, widest)
-    locks = findings.locks.take(rows)
-    points = np.concatenate([np.arange(*findings.locks.offsets[row : row + 2]) for row in rows])
-    held = findings.locks.point.get(PIN, np.zeros(len(radius)))[points] >= 1.0
-    pair, place, distance = _core.crossings(*packed(locks), widest)
-    touching = radius[points[pair]].sum(axis=1)
-    new = (distance < touching) & (touching > allowed.thickness) & ~held[pair].all(axis=1)
-    new &= distance >= allowed.thickness  # nearer ones are there already
-    pair = points[pair[new]]
-    findings.add("hair", pair[:, 0], place[new], touching[new] - distance[new], pair[:, 1])
-
-
-def _near(locks: Curves, thick: NDArray[np.bool_], within: float) -> NDArray[np.int64]:
-    """Rows of the locks with thick points, and of those with points within a distance of one [m]."""
-    edges = np.linalg.norm(np.diff(locks.points, axis=0), axis=1)
-    reach = within + float(edges.max(initial=0.0))
-    near = thick | np.isfinite(KDTree(locks.points[thick]).query(locks.points, distance_upper_bound=reach)[0])
-    return np.flatnonzero(np.logical_or.reduceat(near, locks.offsets[:-1]))
+    held = locks.point.get(PIN, np.zeros(len(radius))) >= 1.0
+    pair, place, distance = _core.crossings(*packed(locks), radius)
+    new = (distance >= allowed.thickness) & ~held[pair].all(axis=1)  # nearer ones are there already
+    pair, depth = pair[new], radius[pair[new]].sum(axis=1) - distance[new]
+    findings.add("hair", pair[:, 0], place[new], depth, pair[:, 1])
 
 
 def lock_of(locks: Curves, points: NDArray) -> NDArray[np.int64]:

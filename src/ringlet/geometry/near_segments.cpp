@@ -7,7 +7,7 @@
 
 namespace ringlet {
 
-std::vector<std::array<int, 2>> near_segments(const CurveView &curves, double within, double along) {
+std::vector<std::array<int, 2>> near_segments(const CurveView &curves, View<double> radius, double along) {
     const View<Vec3> &p = curves.points;
     std::vector<int> segments, curve(p.size());
     std::vector<double> arc_length(p.size(), 0.0); // from the root to each point [m]
@@ -19,9 +19,8 @@ std::vector<std::array<int, 2>> near_segments(const CurveView &curves, double wi
             if (p[k - 1].allFinite() && p[k].allFinite()) segments.push_back(k - 1);
         }
     Bvh tree;
-    const Vec3 half = Vec3::Constant(0.5 * within);
     tree.fit(static_cast<int>(segments.size()), [&](int i) {
-        const Vec3 &a = p[segments[i]], &b = p[segments[i] + 1];
+        const Vec3 &a = p[segments[i]], &b = p[segments[i] + 1], half = Vec3::Constant(radius[segments[i]]);
         return SweptBox::around(a.cwiseMin(b) - half, a.cwiseMax(b) + half);
     });
     std::vector<std::array<int, 2>> result;
@@ -39,8 +38,10 @@ std::vector<std::array<int, 2>> near_segments(const CurveView &curves, double wi
                     const int i = segments[tree.primitive(here.boxes[n].of[0])];
                     const int j = segments[tree.primitive(here.boxes[n].of[1])];
                     const int a = std::min(i, j), b = std::max(i, j);
-                    if (curve[a] == curve[b] && (b - a < 2 || arc_length[b] - arc_length[a + 1] <= along)) continue;
-                    if (closest_edge_edge(p[a], p[a + 1], p[b], p[b + 1]).distance2 < within * within) found.push_back({a, b});
+                    const double touching = radius[a] + radius[b];
+                    if (curve[a] == curve[b] && (b - a < 2 || arc_length[b] - arc_length[a + 1] <= along * touching)) continue;
+                    if (closest_edge_edge(p[a], p[a + 1], p[b], p[b + 1]).distance2 < touching * touching)
+                        found.push_back({a, b});
                 }
             });
 #pragma omp critical

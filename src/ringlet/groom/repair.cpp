@@ -16,7 +16,7 @@ namespace {
 constexpr double rounding = 1e-9;         // [m] depths below this count as 0
 constexpr double body_clearance = 5e-5;   // [m] target distance outside of a body
 constexpr double clearance = 1.15;        // target distance of two curves, in thicknesses
-constexpr double least_along = 4.0;       // least arc length between two segments of one curve that count, in thicknesses
+constexpr double least_along = 4.0;       // arc length from which two segments of one curve count, in touching distances
 constexpr double body_weight = 4.0;       // weight of a target outside of a body, beside 1 for one away from a curve
 constexpr double largest_weight = 4.0;    // largest sum of weights at a point
 constexpr double smoothing_length = 4e-3; // [m] length along a curve over which a move decays
@@ -108,10 +108,9 @@ std::vector<Penetration> find_penetrations(const CurveView &curves, const std::v
     return result;
 }
 
-std::vector<Overlap> find_overlaps(const CurveView &curves, double thickness) {
+std::vector<Overlap> find_overlaps(const CurveView &curves, View<double> radius) {
     std::vector<Overlap> result;
-    for (const auto &pair : near_segments(curves, thickness, least_along * thickness))
-        result.push_back(overlap_of(curves.points, pair));
+    for (const auto &pair : near_segments(curves, radius, least_along)) result.push_back(overlap_of(curves.points, pair));
     return result;
 }
 
@@ -149,7 +148,8 @@ int Repair::push_apart() {
     double moved2 = searched_.empty() ? std::numeric_limits<double>::infinity() : 0.0;
     for (size_t i = 0; i < searched_.size(); ++i) moved2 = std::max(moved2, (points_[i] - searched_[i]).squaredNorm());
     if (moved2 > skin * skin) {
-        pairs_ = near_segments(curves(), wide + 2.0 * skin, least_along * wide);
+        const std::vector<double> radius(points_.size(), 0.5 * wide + skin);
+        pairs_ = near_segments(curves(), radius, least_along * wide / (wide + 2.0 * skin));
         searched_ = points_;
     }
     int violations = 0;

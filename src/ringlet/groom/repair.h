@@ -17,7 +17,7 @@ struct Penetration {
     double depth;
 };
 
-// Two segments nearer than a thickness.
+// Two segments nearer than the sum of their radii.
 struct Overlap {
     int a, b;        // their first points
     double s, t;     // fractions of the closest points along them
@@ -27,7 +27,8 @@ struct Overlap {
 
 std::vector<Penetration> find_penetrations(const CurveView &curves, const std::vector<const Solid *> &bodies,
                                            const Allowed &allowed);
-std::vector<Overlap> find_overlaps(const CurveView &curves, double thickness);
+// Overlaps of curves that have a radius at each point [m].
+std::vector<Overlap> find_overlaps(const CurveView &curves, View<double> radius);
 
 // Iterative repair. It begins with curves that are pushed out of the bodies (push_out.h). Each round finds all violations and
 // gives each a target move: to the closest point of the surface, or by half of the missing distance away from another curve.
