@@ -82,6 +82,27 @@ def test_new_growth_is_short_single_hairs_that_are_densest_at_the_hairline():
     assert density[0] > 1.5 * density[1]
 
 
+def test_the_hairline_of_the_fade_goes_down_in_density_length_and_thickness_without_islands():
+    groom = built(EXAMPLES / "looks" / "fade.recipe.toml")
+    hairs, scalp = make_hairs(groom).curves, Scalp(groom.scalp, groom.region)
+    border = KDTree(border_points(scalp))
+    far, width = border.query(hairs.roots)[0], hairs.point["width"].reshape(len(hairs), -1)[:, 0]
+    tips = hairs.points.reshape(len(hairs), -1, 3)[:, -1]
+    places = scalp.positions(*scalp.sample(20000, 1)[1:])
+    away, nearest = border.query(places)[0], KDTree(hairs.roots).query(places, k=5)[0][:, -1]
+    bands = [(0.0, 0.0025), (0.0025, 0.005), (0.005, 0.01), (0.01, 0.015), (0.015, 0.02)]
+    density, reach, thickness = [], [], []
+    for low, high in bands:
+        there, skin = (far >= low) & (far < high), (away >= low) & (away < high)
+        density.append(there.sum() / skin.sum())
+        reach.append(np.median(np.linalg.norm(tips - hairs.roots, axis=1)[there]))
+        thickness.append(width[there].mean())
+        # as even as by chance: five hairs within a circle of 1.5 times the usual radius (1.4 by a Poisson process)
+        assert np.quantile(nearest[skin], 0.95) < 1.5 * np.median(nearest[skin])
+    for falls, part in ((density, 0.2), (reach, 0.5), (thickness, 0.6)):
+        assert (np.diff(falls) > 0.0).all() and falls[0] < part * falls[-1]
+
+
 @pytest.mark.parametrize("recipe", TIED_LOOKS, ids=name)
 def test_a_tied_look_is_short_and_builds_with_its_bands(recipe):
     assert len(recipe.read_text().splitlines()) < 60
