@@ -68,7 +68,7 @@ extension: build ## the extension for Blender: one zip in dist
 sanitize: .venv/tooled ## the C++ tests with the sanitizers of addresses, undefined behaviour and threads
 	@tools/sanitize.sh
 
-wheel: .venv/tooled ## a wheel for this Python in dist, audited, and tried out in an environment of its own
+wheel: .venv/tooled ## a wheel for this Python and glibc 2.28 in dist, audited, and tried out in an environment of its own
 	@tools/wheel.sh
 
 arm: .venv/tooled ## cross-built for Linux ARM64 and run by qemu-user: C++ tests, a wheel in dist, Python tests

@@ -7,11 +7,11 @@ a time locks a folder; a program that writes other files of the run locks it bef
 
 from __future__ import annotations
 
-import fcntl
 import hashlib
 import io
 import json
 import re
+import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
@@ -25,6 +25,20 @@ from ringlet.data.errors import UserError
 from ringlet.data.files import replacing
 from ringlet.data.regular import check_regular, read_bytes, read_text
 from ringlet.sim.run_inputs import Inputs, changed_input
+
+if sys.platform == "win32":
+    import msvcrt
+
+    def _lock_file(file: BinaryIO) -> None:
+        file.seek(0)
+        msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
+
+else:
+    import fcntl
+
+    def _lock_file(file: BinaryIO) -> None:
+        fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
 
 VERSION = b"ringlet checkpoint 4\n"
 EVERY = 10  # frames from one state to the next, at most
@@ -148,9 +162,13 @@ def locked_folder(folder: Path) -> Iterator[int]:
     try:
         yield max((int(path.suffix[1:]) for path in at.glob("memory.*")), default=0)
     finally:
+        file = _locks.pop(at)
+        if sys.platform == "win32":  # an open file stays, so also what another program locks
+            file.close()
         if [path.name for path in at.glob("*")] == [LOCK_FILE]:
-            (at / LOCK_FILE).unlink()
-        _locks.pop(at).close()
+            with suppress(PermissionError):
+                (at / LOCK_FILE).unlink()
+        file.close()
         with suppress(OSError):  # a folder with checkpoints stays
             at.rmdir()
 
@@ -166,7 +184,7 @@ def _open_lock(folder: Path) -> BinaryIO:
     except OSError as error:
         raise UserError(f"{folder}: cannot be written ({error.strerror}); choose another place") from error
     try:
-        fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        _lock_file(file)
     except (BlockingIOError, PermissionError):
         file.close()
         raise _in_use(folder) from None

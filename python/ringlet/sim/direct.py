@@ -55,7 +55,7 @@ class DirectSolver:
 def open_pardiso() -> bool:
     """Whether PARDISO can be used: MKL as the package index has it, or as the system finds it by name."""
     try:
-        libraries = [file for file in files("mkl") or () if file.name.startswith("libmkl_rt.so")]
+        libraries = [file for file in files("mkl") or () if file.name.startswith(("libmkl_rt.so", "mkl_rt."))]
     except PackageNotFoundError:
         libraries = []
     return any(_core.open_pardiso(str(library.locate())) for library in libraries) or _core.open_pardiso()

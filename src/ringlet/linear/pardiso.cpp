@@ -1,9 +1,14 @@
 #include "ringlet/linear/direct.h"
 
-#include <dlfcn.h>
 #include <mutex>
 #include <omp.h>
 #include <stdexcept>
+#ifndef _WIN32
+#include <dlfcn.h>
+#else // of windows.h, which defines words such as near and far
+extern "C" __declspec(dllimport) void *__stdcall LoadLibraryA(const char *name);
+extern "C" __declspec(dllimport) void *__stdcall GetProcAddress(void *library, const char *name);
+#endif
 
 namespace ringlet {
 namespace {
@@ -20,21 +25,32 @@ struct Library {
     int (*set_threads)(int count);
 };
 
-constexpr int gnu_threads = 3; // the OpenMP threads of the core, so that there is one thread pool
+// A library that is open for good, its functions, its names, and which threads it shares with the core: one pool of OpenMP.
+#ifdef _WIN32
+void *open_library(const char *name) { return LoadLibraryA(name); }
+void *symbol_of(void *handle, const char *name) { return GetProcAddress(handle, name); }
+constexpr const char *names[] = {"mkl_rt.3.dll", "mkl_rt.2.dll"};
+constexpr int openmp_threads = 0; // of Intel, whose library LLVM's code takes too
+#else
+void *open_library(const char *name) { return dlopen(name, RTLD_NOW | RTLD_LOCAL); }
+void *symbol_of(void *handle, const char *name) { return dlsym(handle, name); }
+constexpr const char *names[] = {"libmkl_rt.so.3", "libmkl_rt.so.2", "libmkl_rt.so"};
+constexpr int openmp_threads = 3; // of GNU
+#endif
 
 Library library; // pardiso is null until the library is open
 
 bool open(const char *name) {
-    void *handle = dlopen(name, RTLD_NOW | RTLD_LOCAL);
+    void *handle = open_library(name);
     if (handle == nullptr) return false;
     const auto find = [&]<class Function>(Function &function, const char *symbol) {
-        return (function = reinterpret_cast<Function>(dlsym(handle, symbol))) != nullptr;
+        return (function = reinterpret_cast<Function>(symbol_of(handle, symbol))) != nullptr;
     };
     Library found{};
     if (!find(found.pardiso, "pardiso_64") || !find(found.set_threading_layer, "MKL_Set_Threading_Layer") ||
         !find(found.set_threads, "MKL_Set_Num_Threads_Local"))
         return false;
-    found.set_threading_layer(gnu_threads);
+    found.set_threading_layer(openmp_threads);
     library = found;
     return true;
 }
@@ -98,7 +114,7 @@ bool open_pardiso(const std::string &path) {
     const std::lock_guard guard(opening);
     if (library.pardiso != nullptr) return true;
     if (!path.empty()) return open(path.c_str());
-    for (const char *name : {"libmkl_rt.so.3", "libmkl_rt.so.2", "libmkl_rt.so"})
+    for (const char *name : names)
         if (open(name)) return true;
     return false;
 }
