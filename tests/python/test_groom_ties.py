@@ -120,6 +120,21 @@ def test_a_band_is_a_closed_body_around_the_hair_that_a_shot_can_name(tmp_path):
     assert np.array_equal(read_groom(tmp_path / "puff.usdc").locks.curve[TO_TIE], groom.locks.curve[TO_TIE])
 
 
+@pytest.mark.parametrize("toward", ["[0, 1, 0]", "[1, 0.3, 0.2]"])
+def test_a_band_has_two_beads_side_by_side_on_its_upper_side(toward):
+    settings = "after = 'tail'\nband = 0.4\nbead = 1.8\ncolors = ['#ff0000', '#00ff00']"
+    band, *beads = bands(tied(TOP.replace("[0, 1, 0]", toward) + settings))
+    centre, middles = band.points.mean(axis=0), [bead.points.mean(axis=0) for bead in beads]
+    assert len(beads) == 2 and band.color == beads[0].color == beads[1].color
+    assert np.linalg.norm(middles[1] - middles[0]) == pytest.approx(0.018, rel=1e-6)  # they touch
+    for bead, middle in zip(beads, middles, strict=True):
+        assert np.linalg.norm(middle - centre) == pytest.approx(0.01 + 0.004 + 0.009, rel=1e-6)
+        assert np.linalg.norm(bead.points - middle, axis=1).max() == pytest.approx(0.009, rel=1e-6)
+        a, b, c = (bead.points[bead.triangles[:, k]] - middle for k in range(3))
+        assert np.sum(a * np.cross(b, c)) > 0.0  # faces look outwards
+    assert np.mean(middles, axis=0)[1] > centre[1] - 1e-5  # level at the crown
+
+
 def test_a_bun_is_wound_without_overlap_and_its_ends_are_in_it():
     groom = tied(TOP + "after = 'bun'\nwidth = 7\nheight = 4\nwindings = 2.2\nband = 0.4", count=120)
     points = grid(groom.locks)

@@ -108,7 +108,8 @@ def test_a_tied_look_is_short_and_builds_with_its_bands(recipe):
     assert len(recipe.read_text().splitlines()) < 60
     groom = built(recipe)
     assert not groom.conflicts and (groom.locks.curve[TO_TIE] > 0.0).mean() > 0.98
-    assert len(groom.accessories) == (2 if "puffs" in recipe.name else 1)
+    ties = {"two_puffs": 2, "ponytails": len(np.unique(groom.locks.curve.get(SECTION, 0)))}.get(name(recipe), 1)
+    assert len(groom.accessories) == ties * (3 if "bead =" in recipe.read_text() else 1)  # two beads on a band
 
 
 def test_the_ombre_is_dark_at_its_roots_and_light_at_its_tips():

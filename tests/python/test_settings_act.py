@@ -120,6 +120,7 @@ BESIDE = {
     "Loc.bud_at": "bud = 1\n",
     "Loc.bud_length": "bud = 1\n",
 }
+BESIDE |= {f"Tie.{name}": "band = 0.4\n" for name in ("bead", "colors")}
 for woven in ("Braid", "Twist", "Cornrow"):
     BESIDE |= {f"{woven}.{name}": "end = 'bead'\n" for name in ("bead", "bead_length", "beads")}
     BESIDE |= {f"{woven}.{name}": "band = '1 mm'\n" for name in ("density", "colors")}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,7 +12,8 @@ from ringlet.data.accessory import Accessory, carried
 from ringlet.data.curves import Curves
 from ringlet.data.groom import WORN_MASS, WORN_RADIUS
 from ringlet.data.mesh import Mesh
-from ringlet.groom.operators.operator import UP, arc_lengths, at_lengths, unit
+from ringlet.data.pigment import linear_color
+from ringlet.groom.operators.operator import UP, Context, arc_lengths, at_lengths, unit
 
 AROUND, ACROSS = 48, 12  # points of a mesh of revolution, and of its profile
 
@@ -94,6 +95,20 @@ def ring(radius: float, width: float, height: float, roundness: float = 1.0) -> 
     angle = np.linspace(0.0, 2.0 * np.pi, ACROSS, endpoint=False)
     x, y = (np.sign(c) * np.abs(c) ** roundness for c in (np.cos(angle), np.sin(angle)))
     return np.stack([radius + 0.5 * width * (1.0 + x), 0.5 * height * y], axis=1)
+
+
+def ball(width: float, hole: float) -> NDArray[np.float64]:
+    """Profile of a ball of a width around a hole of another [m]."""
+    last = np.arccos(hole / width)
+    angle = np.linspace(-last, last, ACROSS)
+    return 0.5 * width * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+
+
+def chosen_color(colors: Sequence[str], name: str, context: Context) -> tuple[float, float, float]:
+    """The linear one of some colours for what is worn under a name, at random."""
+    chance = float(context.random(f"color of {name}").uniform(np.zeros(1, np.int64))[0])
+    red, green, blue = linear_color(colors[int(chance * len(colors))]).tolist()
+    return red, green, blue
 
 
 def _places(curves: Curves, ids: NDArray, parts: NDArray) -> tuple[NDArray[np.float64], NDArray[np.int64]]:

@@ -12,12 +12,11 @@ from pydantic import Field
 from ringlet.data.curves import Curves
 from ringlet.data.groom import STRAND_PROFILE, STRAND_RADIUS, TIED
 from ringlet.data.mesh import Mesh
-from ringlet.data.pigment import linear_color
 from ringlet.data.quantities import Quantity, Varied
 from ringlet.groom.color import Color
 from ringlet.groom.operators.operator import Context, arc_lengths, grid, unit
 from ringlet.groom.operators.sectioned import Sectioned
-from ringlet.groom.worn import Worn, revolved, ring, volume
+from ringlet.groom.worn import Worn, chosen_color, revolved, ring, volume
 
 HOLE = 0.5  # width of a bead's hole, relative to its own
 PINCH = 0.8  # factor on the width of a braid under a band
@@ -111,10 +110,7 @@ class Ended(Sectioned):
 
     def _color(self, name: str, context: Context) -> tuple[float, float, float]:
         """The linear colour of a band or a bead of that name."""
-        colors = self.colors or (BEAD if self.end == "bead" else BAND)
-        chance = float(context.random(f"color of {name}").uniform(np.zeros(1, np.int64))[0])
-        red, green, blue = linear_color(colors[int(chance * len(colors))]).tolist()
-        return red, green, blue
+        return chosen_color(self.colors or (BEAD if self.end == "bead" else BAND), name, context)
 
 
 @dataclass(frozen=True)

@@ -16,12 +16,13 @@ from ringlet.data.errors import UserError
 from ringlet.data.groom import SECTION
 from ringlet.data.quantities import Quantity, Ramped, Varied, refuse
 from ringlet.groom.coil import Coil, on_scalp
+from ringlet.groom.color import Color
 from ringlet.groom.helpers import Names
 from ringlet.groom.operators.operator import UP, Context, arc_lengths, at_lengths, grid, unit, with_lock_points
 from ringlet.groom.operators.shape import Shape
 from ringlet.groom.operators.tied import TO_TIE
 from ringlet.groom.part_line import Direction
-from ringlet.groom.worn import Worn, revolved, ring
+from ringlet.groom.worn import Worn, ball, chosen_color, revolved, ring
 
 PATH_POINTS = 24  # of the path over the head, and of that after the tie
 SMOOTHING = 3  # passes over the path on the skin
@@ -36,9 +37,12 @@ PER_TIE = (
     "height",
     "windings",
     "band",
+    "bead",
 )  # settings with a value for each tie
 CARRIERS = 40  # roots nearest to a tie, which carry its band
-BAND_COLOR = (0.02, 0.02, 0.025)
+HOLE = 0.2  # width of the hole of a bead on a band, relative to its own
+NEARLY = np.array([0.0, 0.0, 1e-3])
+BAND = ("#26262b",)  # colour without any of the recipe's
 
 
 class Tie(Shape):
@@ -100,6 +104,12 @@ class Tie(Shape):
         default=Varied(value=0.0),
         description="thickness of the band, a mesh that the groom's file has and the head carries; 0: none",
     )
+    bead: Annotated[Varied, Quantity("m", 0.0, 0.1)] = Field(
+        default=Varied(value=0.0), description="width of the two beads that a band has side by side; 0: none"
+    )
+    colors: list[Color] = Field(
+        default=[], description="colours of bands, in sRGB: `#rrggbb`; each gets one of them at random, with its beads"
+    )
 
     turns: ClassVar[bool] = True
     starter: ClassVar[Mapping[str, Any]] = {"toward": [0, 1, -0.35]}
@@ -127,16 +137,21 @@ class Tie(Shape):
         return Curves(result.points, result.offsets, result.ids, {**result.curve, TO_TIE: tied}, result.point)
 
     def worn(self, before: Curves, after: Curves, context: Context) -> list[Worn]:
-        """The bands around the hair in the ties, as rings that the roots nearest to them carry."""
+        """The bands around the hair in the ties, with their beads, which the roots nearest to them carry."""
         affected: NDArray[np.bool_] = np.any(self.weights(before, context) > 0.0, axis=1)
         made = []
         for k, tie in enumerate(self._ties(before, affected, context)):
-            if (band := tie.value["band"]) > 0.0:
-                profile = ring(tie.value["radius"], band, band)
-                mesh = revolved(f"{context.purpose} {k}", tie.place, tie.axis, profile, BAND_COLOR)
-                away = np.linalg.norm(after.roots[tie.rows] - tie.place, axis=1)
-                nearest = tie.rows[np.argsort(away, kind="stable")[:CARRIERS]]
-                made.append(Worn.around(mesh, after, nearest, np.zeros(1)))
+            if (band := tie.value["band"]) == 0.0:
+                continue
+            name, radius, bead = f"{context.purpose} {k}", tie.value["radius"], tie.value["bead"]
+            color = chosen_color(self.colors or BAND, name, context)
+            meshes = [revolved(name, tie.place, tie.axis, ring(radius, band, band), color)]
+            if bead > 0.0:
+                for side, (place, axis) in enumerate(tie.beads(radius + band + 0.5 * bead, bead)):
+                    meshes.append(revolved(f"{name} {side}", place, axis, ball(bead, HOLE * bead), color))
+            away = np.linalg.norm(after.roots[tie.rows] - tie.place, axis=1)
+            nearest = tie.rows[np.argsort(away, kind="stable")[:CARRIERS]]
+            made += [Worn.around(mesh, after, nearest, np.zeros(1)) for mesh in meshes]
         return made
 
     def _ties(self, curves: Curves, affected: NDArray[np.bool_], context: Context) -> Iterator[Place]:
@@ -292,6 +307,14 @@ class Place:
         along = self.axis if self.line is None else unit(self.line[-1] - self.line[0])
         across = unit(np.cross(along, unit(middle - self.place) + 1e-3))
         return across, unit(np.cross(across, along))
+
+    def beads(self, away: float, width: float) -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:
+        """Places of two beads side by side on the upper side of the tie, away from its axis [m], and their axes."""
+        upper = UP + NEARLY  # a tie at the crown has an upper side, too
+        up = unit(upper - (upper @ self.axis) * self.axis)
+        across, half = np.cross(self.axis, up), np.arcsin(min(0.5 * width / away, 1.0))
+        turns = [(np.cos(turn), np.sin(turn)) for turn in (-half, half)]
+        return [(self.place + away * (c * up + s * across), c * across - s * up) for c, s in turns]
 
 
 def _around(roots: NDArray, ties: NDArray, middle: NDArray, t: NDArray) -> NDArray[np.float64]:
