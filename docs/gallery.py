@@ -1,4 +1,4 @@
-"""Makes the gallery: styles on two heads in one light, each with a close-up, and the page that shows them.
+"""Makes the gallery: styles on their heads in one light, each with a close-up, and the page that shows them.
 
     .venv/bin/python docs/gallery.py            all pictures that are missing or out of date, one at a time
     .venv/bin/python docs/gallery.py bob 4C     those of these styles
@@ -28,14 +28,15 @@ import ringlet
 
 DOCS = Path(__file__).parent
 ROOT, FOLDER = DOCS.parent, DOCS / "images" / "gallery"
-HEADS = ("child", "adult")
+HEADS = ("child", "adult")  # of a style that names none
 COLUMNS = 6  # of small pictures
 FOCAL_LENGTH, AWAY = 0.085, 1.9  # of the lens; from the camera to what it looks at [m]
 
 
 PAGE_HEAD = """# Gallery
 
-Styles on two heads in one light. The child and the adult are made by the code in `examples/child` and `examples/adult`.
+Styles on three heads in one light, which are made by the code in `examples/child`, `examples/adult` and
+`examples/torso`.
 Grooms have about 120 hairs per cm² of scalp or more, also in braids, twists, locs. Pictures are path-traced, with all
 hairs.
 Pictures that are not rendered yet are left out.

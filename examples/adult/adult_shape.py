@@ -6,6 +6,9 @@ adult proportions: eyes at half the height of the head; hairline, brows, base of
 
 from __future__ import annotations
 
+from dataclasses import replace
+from functools import partial
+
 import numpy as np
 from anatomy import Head, mirrored
 from distances import Array, capsule, ellipsoid, intersect, smooth, sphere, stroke, subtract, union
@@ -43,20 +46,34 @@ EAR = Ear(centre=np.array([6.75, -2.0, -1.2]), flare=np.radians(24.0), tilt=np.r
 SKULL = np.array([0.0, 0.5, -1.2])
 BROW = ((1.5, 0.75, 8.2), (3.5, 1.5, 7.4), (5.6, 0.35, 5.6))
 
-WAIST, STRETCH = -27.0, 8.0  # height of the waist, and length of the constant width below, past any picture's edge
+WAIST = -27.0  # height of the waist, below which the width is constant
+BUST, TRUNK = 8.0, 36.0  # lengths of that width: of a bust past any picture's edge, and for hair of 60 cm to lie on
 
 
 def skin(points: Array) -> Array:
     """Head, ears, neck, and the chest inside a neckline."""
     p = mirrored(points)
-    visible = intersect(body(p), sphere(p, (0, -15.5, -3.0), 11.0), 0.6)
-    return with_features(union(head(p), visible, 1.6), p, FEATURES)
+    return with_features(union(head(p), chest(p), 1.6), p, FEATURES)
 
 
-def shirt(points: Array) -> Array:
-    """A top: an offset of the body with an opening around the neck, a rib along the neckline and a rounded end."""
+def skin_to_neckline(points: Array) -> Array:
+    """The same, with no more chest than is seen: nothing comes through the shirt."""
     p = mirrored(points)
-    p[:, 1] += np.clip(WAIST - p[:, 1], 0.0, STRETCH)
+    return with_features(union(head(p), intersect(chest(p), neckline(p) - 0.5, 0.4), 1.6), p, FEATURES)
+
+
+def chest(p: Array) -> Array:
+    """Neck and chest."""
+    return intersect(body(p), sphere(p, (0, -15.5, -3.0), 11.0), 0.6)
+
+
+def shirt(points: Array, below: float = BUST) -> Array:
+    """A top: an offset of the body with an opening around the neck, a rib along the neckline and a rounded end.
+
+    below: length of the constant width below the waist
+    """
+    p = mirrored(points)
+    p[:, 1] += np.clip(WAIST - p[:, 1], 0.0, below)
     cloth = intersect(torso(p) - 0.4, ellipsoid(p, (0, -20.0, -3.0), (24.0, 13.0, 14.0)), 1.5)
     return with_neckline(cloth, neckline(p), 0.34)
 
@@ -167,4 +184,12 @@ HEAD = Head(
         "shirt": np.array([0.05, 0.15, 0.16]),
         "iris": np.array([0.07, 0.028, 0.012]),
     },
+)
+
+TORSO = replace(  # the same head over a back
+    HEAD,
+    name="torso",
+    skin=skin_to_neckline,
+    shirt=partial(shirt, below=TRUNK),
+    shirt_box=((-22.0, -42.4 + BUST - TRUNK, -14.2), (22.0, -8.0, 8.2)),
 )

@@ -68,3 +68,9 @@ def test_hair_in_equilibrium_stays_at_rest_away_from_cloth():
     moved = np.maximum.reduceat(away, curves.offsets[:-1])
     assert moved.max() > 0.01
     assert np.quantile(moved, 0.8) < 35e-6  # [m] radius of a hair
+
+
+def test_long_braids_on_a_torso_come_to_rest_without_crossings():
+    frames = list(judged(start("../torso/rest"), 3))
+    assert all(frame.crossings == 0 and frame.statistics["nan"] == 0 for frame in frames)
+    assert frames[-1].statistics["contact"]["contacts"] > 100  # braids lie on one another, on shoulders and back

@@ -1,4 +1,4 @@
-"""The styles of the gallery, at a part of their locks and hairs, on both heads."""
+"""The styles of the gallery, at a part of their locks and hairs, on their heads."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from ringlet.groom import hairs_per_cm2, make_hairs, read_recipe
 
 ROOT = Path(__file__).parents[2]
 STYLES = {entry["name"]: entry for entry in tomllib.loads((ROOT / "docs/gallery.toml").read_text())["style"]}
-HEADS = ("child", "adult")
+HEADS = ("child", "adult", "torso")
 ON_SCALPS = [(name, entry["head"]) for name, entry in STYLES.items() if "heads" not in entry]  # those of any head
 LOCKS = 160  # of loose hair
 LOCK_RADIUS = 3e-3  # of what a lock hides [m]
@@ -53,8 +53,8 @@ def style(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     return name, head, ringlet.build_groom(path)
 
 
-def test_there_are_twenty_styles_on_two_heads_with_short_recipes_and_a_page():
-    assert len(STYLES) >= 20
+def test_there_are_thirty_styles_on_three_heads_with_short_recipes_and_a_page():
+    assert len(STYLES) >= 30
     assert all(len((ROOT / entry["recipe"]).read_text().splitlines()) < 60 for entry in STYLES.values())
     assert {entry["head"] for entry in STYLES.values()} == set(HEADS)
     page = (ROOT / "docs/gallery.md").read_text()
