@@ -465,10 +465,11 @@ def slider(_folder: Path) -> dict:
     head = bpy.data.objects["Kim"]
     wait(settled)
     found |= {"undone": size(head), "undone length": head.ringlet.recipe_guides.length__value}
-    bpy.ops.ed.redo()
+    bpy.ops.ed.redo()  # to before the curves of the slider
     head = bpy.data.objects["Kim"]
+    of("timer").tick()
+    found |= {"redone": size(head), "asked again": of("grooming").state_of(head).busy}
     wait(settled)
-    found["redone"] = size(head)
     head.ringlet.recipe_curl.width__value = 50.0
     wait(settled)
     found["refused"] = of("grooming").state_of(head).message
@@ -692,6 +693,7 @@ def guides(folder: Path) -> dict:
     found = {"before": size(head)}
     bpy.ops.ringlet.sculpt_guides()
     drawn = own.guides
+    found["sculpting"] = bpy.context.active_object == drawn and bpy.context.mode == "SCULPT_CURVES"
     tips = np.empty(3 * len(drawn.data.points), np.float32)
     drawn.data.attributes["position"].data.foreach_get("vector", tips)
     tips = tips.reshape(14, -1, 3)

@@ -192,7 +192,7 @@ def test_a_groom_from_scratch_follows_a_slider_undo_and_redo(act):
     assert "length = 10" in found["text"] and "# a cap of curls" in found["text"] and found["changes"] == ""
     assert found["undone"] == pytest.approx(found["before"], abs=1e-6)
     assert found["undone length"] == pytest.approx(0.05)
-    assert found["redone"] == pytest.approx(found["after"], abs=1e-6)
+    assert found["redone"] == pytest.approx(found["after"], abs=1e-6) and not found["asked again"]
     assert "curl.width is 50 m; must be at most 0.2 m" in found["refused"]
     assert found["kept"] == pytest.approx(found["after"], abs=1e-6) and found["mended"] == ""
 
@@ -323,6 +323,7 @@ def test_ringlet_is_installed_from_a_folder_of_wheels(act, tmp_path):
 def test_sculpted_guides_maps_operators_and_variants(act):
     found = act("guides")
     assert found["sculpted"] > found["before"] + 0.015 and found["message"] == ""
+    assert found["sculpting"]
     assert "guides.usdc" not in found["text"]  # the panel says where guides come from
     assert found["grown"] == pytest.approx(found["before"], abs=1e-6)
     assert found["operators"] == ["frizz"] and found["removed"] == []

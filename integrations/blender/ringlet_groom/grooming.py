@@ -56,6 +56,9 @@ class State:
 states: dict[str, State] = {}  # of heads by id
 # Of meshes and guides by the number of the object, with fingerprints, until they change.
 _arrays: dict[int, tuple[dict[str, np.ndarray], str]] = {}
+# The last answers by what they were made of, so that undo, redo and a slider there and back show them at once.
+_answers: dict[str, Message] = {}
+MOST_ANSWERS = 3
 # Of heads by the number of the object: the fingerprint of the rest pose, and its vertices where the head shows them.
 _skins: dict[int, tuple[str, np.ndarray]] = {}
 
@@ -179,6 +182,9 @@ def watch(head: bpy.types.Object) -> None:
         state.asked = key
         if is_made(head, key) and Document(head, "recipe").settings:
             state.message = ""
+        elif key in _answers:
+            document = Document(head, "recipe")
+            _take(own.id, (document.text, document.changes), inputs_of(head), _answers[key])
         else:
             ask(head)
     except Refused as error:
@@ -264,6 +270,9 @@ def _take(id: str, sent: tuple[str, str], inputs: str, message: Message) -> None
     state.busy, state.message, state.progress = False, "", ("", 1.0)
     if head is None:
         return
+    _answers[_digest([*sent, inputs])] = message
+    for old in list(_answers)[:-MOST_ANSWERS]:
+        del _answers[old]
     document = Document(head, "recipe")
     state.conflicts, state.counts = header["conflicts"], header["counts"]
     keep_settings("recipe", header["text"], header["settings"])

@@ -139,12 +139,12 @@ class ChangeOperator(OnHead, bpy.types.Operator):
 
 
 class SculptGuides(OnHead, bpy.types.Operator):
-    """Copy the guides, to be sculpted: from then on they give silhouette and length"""
+    """Copy the guides and sculpt the copy: from then on it gives silhouette and length"""
 
     bl_idname = "ringlet.sculpt_guides"
     bl_label = "Sculpt Guides"
 
-    def act(self, _context: bpy.types.Context, head: bpy.types.Object) -> None:
+    def act(self, context: bpy.types.Context, head: bpy.types.Object) -> None:
         source = head.ringlet.guide_curves
         if source is None:
             raise Refused("There are no guides yet; wait for the groom")
@@ -152,6 +152,13 @@ class SculptGuides(OnHead, bpy.types.Operator):
         identity.link_with(head, thing)
         thing.parent, thing.matrix_parent_inverse = head, source.matrix_parent_inverse
         head.ringlet.guides = thing
+        if context.mode != "OBJECT":
+            bpy.ops.object.mode_set(mode="OBJECT")
+        for one in context.selected_objects:
+            one.select_set(False)
+        thing.select_set(True)
+        context.view_layer.objects.active = thing
+        bpy.ops.object.mode_set(mode="SCULPT_CURVES")
 
 
 class AddImage(OnHead, bpy.types.Operator):

@@ -17,12 +17,15 @@ MOST_LINES = 4  # of notes
 
 
 def draw_settings(layout: bpy.types.UILayout, group: bpy.types.PropertyGroup, kind: str, settings: list) -> None:
-    """Draws settings: a value with its variation folded below it, those without a value in gray."""
+    """Draws settings: a value with its variation folded below it, those without a value in gray, and those
+    of an optional table that is not there."""
+    absent = [one.place for one in settings if one.kind == "table" and not is_set(group, kind, one)]
     for setting in settings:
         if setting.of is not None:
             continue
         row = layout.row(align=True)
-        row.active = setting.kind in ("table", "boolean") or is_set(group, kind, setting)
+        valued = setting.kind in ("table", "boolean") or is_set(group, kind, setting)
+        row.active = valued and not any(setting.place[: len(one)] == one != setting.place for one in absent)
         row.prop(group, setting.name)
         more = [one for one in settings if one.of == setting.place]
         if more:
@@ -76,9 +79,9 @@ class Main(bpy.types.Panel):
         row = layout.row()
         row.active = own.show_hairs
         row.prop(own, "fraction")
-        if state.progress[0]:
-            layout.progress(text=state.progress[0], factor=state.progress[1])
-        if state.message:
+        if state.progress[0]:  # in place of what it will change, so that all below stays under the pointer
+            layout.progress(text=f"Grooming: {state.progress[0]}", factor=state.progress[1])
+        elif state.message:
             lines(layout, state.message, "INFO" if state.message.startswith("Wrote") else "ERROR")
         elif state.counts:
             layout.label(text=", ".join(f"{count:,} {name}" for name, count in state.counts.items()))
@@ -134,8 +137,10 @@ class Shot(bpy.types.Panel):
         layout.prop(own, "colliders")
         layout.prop(own, "cloth")
         if shots.run is not None:
-            layout.progress(text=shots.stage, factor=shots.part)
-            layout.operator("ringlet.cancel")
+            layout.progress(text="Canceling" if shots.run.canceled else shots.stage, factor=shots.part)
+            row = layout.row()
+            row.enabled = not shots.run.canceled
+            row.operator("ringlet.cancel")
         else:
             row = layout.row(align=True)
             row.operator("ringlet.simulate").resume = False

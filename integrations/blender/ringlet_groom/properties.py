@@ -30,6 +30,7 @@ KINDS = ("recipe", "shot")
 CURVES = ("guide_curves", "lock_curves", "hair_curves", "lock_motion", "hair_motion")
 _settings: dict[tuple[str, str], dict[str, Any]] = {}  # all settings of a text, as Ringlet answered
 MOST_KEPT = 64
+UNITS = {"deg": "°", "/cm2": "/cm²", "Hz": "Hz", "s": "s", "kg/m³": "kg/m³"}  # in names; Blender adds that of lengths
 
 
 def keep_settings(kind: str, text: str, settings: dict[str, Any]) -> None:
@@ -131,7 +132,8 @@ def _accessors(kind: str, setting: Setting) -> tuple[Callable, Callable]:
 
 def is_set(group: bpy.types.PropertyGroup, kind: str, setting: Setting) -> bool:
     """Whether a setting has a value; one of two that exclude each other has none."""
-    return Document(group.id_data, kind).value(place_of(group, setting), setting) not in (None, False)
+    value = Document(group.id_data, kind).value(place_of(group, setting), setting)
+    return value is not None and value is not False
 
 
 def _shown(setting: Setting, value: Any) -> Any:
@@ -171,7 +173,8 @@ def _stored(setting: Setting, value: Any) -> Any:
 def _property(kind: str, setting: Setting) -> Any:
     """The Blender property of a setting."""
     get, put = _accessors(kind, setting)
-    common = {"name": setting.label, "description": setting.description[:1000], "get": get, "set": put}
+    name = f"{setting.label} [{UNITS[setting.unit]}]" if setting.unit in UNITS else setting.label
+    common = {"name": name, "description": setting.description[:1000], "get": get, "set": put}
     bounds = {"min": setting.least, "max": setting.most}
     if setting.unit == "m":  # in the unit of the scene: all but the sign is left to Ringlet
         bounds = {"min": 0.0 if setting.least is not None and setting.least >= 0 else None}

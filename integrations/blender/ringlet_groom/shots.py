@@ -52,6 +52,7 @@ class Run:
     files:  what moves, the head, then colliders and cloth, by the name of the file; each with its name in there
     points: of those in each frame so far, by the number of the object
     before: the frame of the scene and the part of it, to return to
+    canceled: whether Ringlet was told to end it, which it does after the step in progress
     """
 
     head: str
@@ -62,6 +63,7 @@ class Run:
     next_frame: int = 0
     before: tuple[int, float] = (0, 0.0)
     request: int = 0
+    canceled: bool = False
 
 
 @dataclass
@@ -113,6 +115,7 @@ def cancel() -> None:
         return
     if shots.run.request:
         session.cancel(shots.run.request)
+        shots.run.canceled = True
     else:
         _return(shots.run)
         _end("canceled")
