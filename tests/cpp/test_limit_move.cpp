@@ -2,6 +2,7 @@
 #include "crowd.h"
 
 #include <boost/test/unit_test.hpp>
+#include <omp.h>
 
 using namespace ringlet;
 
@@ -59,6 +60,23 @@ BOOST_AUTO_TEST_CASE(strands_that_are_shortened_further_have_no_impact_either) {
         }
         BOOST_TEST(violations > 100);
     }
+}
+
+BOOST_AUTO_TEST_CASE(a_limited_move_is_the_same_for_any_number_of_threads) {
+    const Crowd crowd(400, 0.02, 0.03, 11);
+    const auto limited_by = [&](int threads, Yield yield) {
+        omp_set_num_threads(threads);
+        std::vector<Vec3> limited;
+        crowd.limit(limited, yield);
+        return limited;
+    };
+    const int threads = omp_get_max_threads();
+    for (const Yield yield : {Yield::near_impacts, Yield::as_a_whole}) {
+        const std::vector<Vec3> expected = limited_by(1, yield);
+        BOOST_TEST((expected != crowd.end));
+        for (int run = 0; run < 5; ++run) BOOST_TEST((limited_by(4, yield) == expected));
+    }
+    omp_set_num_threads(threads);
 }
 
 BOOST_AUTO_TEST_CASE(a_move_without_impacts_is_left_alone) {

@@ -4,7 +4,7 @@
 #include "ringlet/ccd/spread_correction.h"
 
 #include <algorithm>
-#include <functional>
+#include <atomic>
 #include <map>
 #include <optional>
 
@@ -12,11 +12,12 @@ namespace ringlet {
 namespace {
 
 constexpr size_t prefetched_pairs = 6; // loaded ahead of the one that is tested
+constexpr int few_objects = 32;        // fewer are not worth threads
 
 // One call of limit_move(). The whole objects of an impact are scaled to its time, and one that then hits another with a
-// smaller fraction stops before that. Such chains are resolved within a round, event by event, the smallest fraction first.
-// What was corrected locally is checked in a further round. After some rounds objects with an impact rest, and two that rest
-// have none.
+// smaller fraction stops before that. Such chains are resolved within a round, in passes over events: all at once that come
+// first for both their objects, as the edges of a locally dominant matching (Preis 1999). What was corrected locally is checked
+// in a further round. After some rounds objects with an impact rest, and two that rest have none.
 class MoveLimiter {
 public:
     MoveLimiter(MoveCandidates &pairs, View<Vec3> start, PlannedMove &move, Yield yield);
@@ -34,23 +35,24 @@ private:
         int a, b; // −1: not a whole object that moves
         double fraction_a, fraction_b;
 
-        bool operator>(const Event &other) const {
-            if (fraction != other.fraction) return fraction > other.fraction;
-            return a != other.a ? a > other.a : b > other.b;
+        bool operator<(const Event &other) const {
+            if (fraction != other.fraction) return fraction < other.fraction;
+            return a != other.a ? a < other.a : b < other.b;
         }
     };
 
-    std::vector<int> correct_locally(const std::vector<Impact> &impacts);
-    void limit_whole(const std::vector<Impact> &impacts, const std::vector<int> &corrected);
-    void limit_object(int object, double fraction, std::vector<Event> &events);
-    void add_event(const Impact &impact, std::vector<Event> &events) const;
+    bool correct_locally(const std::vector<Impact> &impacts);
+    void limit_whole(const std::vector<Impact> &impacts);
+    void find_first_events(const std::vector<int> &objects);
+    bool is_first_of_both(const Event &event) const;
+    bool is_superseded(const Event &event) const;
+    bool limits(int object, double fraction) const;
+    void limit_object(int object, double fraction);
+    void find_events(int object);
+    void add_event(const Impact &impact, int object);
     std::array<int, 2> whole_objects_of(const Impact &impact) const;
     int whole_object_of(int v, int w) const;
     void scale_motion(int v, double factor);
-    void mark_changed(int v) {
-        if (!changed_[v]) changed_list_.push_back(v);
-        changed_[v] = 1;
-    }
     void prefetch(View<CandidatePair *> pairs, size_t k) const;
     bool may_have_impact(const CandidatePair &pair) const;
 
@@ -60,18 +62,24 @@ private:
     PlannedMove &move_;
     Yield yield_;
     int round_ = 0;
-    bool any_local_ = false;                  // whether objects that are not whole move in any pair
-    bool corrected_locally_ = false;          // in any round: what was known of impacts no longer holds
-    std::vector<CandidatePair> transient_;    // as in the first round; later rounds change those of the cache
-    Lists<CandidatePair *> pairs_of_object_;  // of two whole objects that may come together on their paths
-    std::vector<double> fraction_, measured_; // of its motion that each object makes, now and when paths were measured
-    std::vector<unsigned char> changed_;      // per vertex
-    std::vector<int> changed_list_;
+    bool any_local_ = false;                        // whether objects that are not whole move in any pair
+    bool corrected_locally_ = false;                // in any round: what was known of impacts no longer holds
+    std::vector<CandidatePair> transient_;          // as in the first round; later rounds change those of the cache
+    Lists<CandidatePair *> pairs_of_object_;        // of two whole objects that may come together on their paths
+    std::vector<double> fraction_, measured_;       // of its motion that each object makes, now and when paths were measured
+    std::vector<unsigned char> changed_;            // per vertex
+    std::vector<std::vector<Event>> events_;        // that each object has found
+    std::vector<std::atomic<const Event *>> first_; // of the events that concern each object
+    int pass_ = 0;                                  // counted through all rounds
+    std::vector<int> limited_in_;                   // pass in which each object was limited last
+    std::vector<unsigned char> stays_;              // whole objects that were corrected locally in this round
 };
 
 MoveLimiter::MoveLimiter(MoveCandidates &pairs, View<Vec3> start, PlannedMove &move, Yield yield)
     : pairs_(pairs), mesh_(pairs.candidates().mesh()), start_(start), move_(move), yield_(yield),
-      transient_(pairs.transient_pairs()), fraction_(mesh_.objects.size(), 1.0), changed_(move.to.size(), 0) {
+      transient_(pairs.transient_pairs()), fraction_(mesh_.objects.size(), 1.0), changed_(move.to.size(), 0),
+      events_(mesh_.objects.size()), first_(mesh_.objects.size()), limited_in_(mesh_.objects.size(), 0),
+      stays_(mesh_.objects.size(), 0) {
     const std::vector<CandidatePair *> &cached = pairs_.path_candidates();
     const int count = int(cached.size());
     const auto pair_of = [&](int k) { return k < count ? cached[k] : &transient_[k - count]; };
@@ -98,21 +106,19 @@ int MoveLimiter::whole_object_of(int v, int w) const {
     return moves && mesh_.objects[mesh_.object[v]].whole ? mesh_.object[v] : -1;
 }
 
+// An impact of an object with itself has one.
 std::array<int, 2> MoveLimiter::whole_objects_of(const Impact &impact) const {
     const auto &[a0, a1, b0, b1] = impact.vertices;
-    return {whole_object_of(a0, a1), whole_object_of(b1, b0)};
+    const int a = whole_object_of(a0, a1), b = whole_object_of(b1, b0);
+    return {a, a == b ? -1 : b};
 }
 
 void MoveLimiter::resolve(const std::vector<Impact> &impacts) {
-    for (const int v : changed_list_) changed_[v] = 0;
-    changed_list_.clear();
-    for (const Impact &impact : impacts) // is checked again: a local correction elsewhere may have left this impact unresolved
-        for (const int v : impact.vertices)
-            if (mesh_.moves[v]) mark_changed(v);
+    std::fill(changed_.begin(), changed_.end(), 0);
+    mark_vertices(mesh_, impacts, changed_); // checked again: a local correction elsewhere may have left an impact unresolved
     measured_ = fraction_;
-    const std::vector<int> corrected = correct_locally(impacts);
-    limit_whole(impacts, corrected);
-    corrected_locally_ |= !corrected.empty();
+    corrected_locally_ |= correct_locally(impacts);
+    limit_whole(impacts);
     ++round_;
 }
 
@@ -120,10 +126,12 @@ bool MoveLimiter::may_leave_impacts() const {
     return round_ > ccd::whole_rounds || corrected_locally_ || any_local_ || pairs_.any_escaped();
 }
 
-// Corrects objects near their impacts that are not whole, and whole ones that could hardly move. Returns the latter.
-std::vector<int> MoveLimiter::correct_locally(const std::vector<Impact> &impacts) {
+// Corrects objects near their impacts that are not whole, and whole ones that could hardly move. Returns whether there are any
+// of the latter.
+bool MoveLimiter::correct_locally(const std::vector<Impact> &impacts) {
     const bool any_whole = yield_ == Yield::near_impacts && round_ < ccd::local_rounds;
-    if (!any_whole && !any_local_) return {};
+    std::fill(stays_.begin(), stays_.end(), 0);
+    if (!any_whole && !any_local_) return false;
     std::map<int, double> fractions; // whole object → fraction of its present motion up to its first impact
     std::vector<Correction> corrections(move_.to.size());
     for (const Impact &impact : impacts) {
@@ -140,10 +148,10 @@ std::vector<int> MoveLimiter::correct_locally(const std::vector<Impact> &impacts
             corrections[v].weight = std::max(corrections[v].weight, 1.0 - fraction);
         }
     }
-    std::vector<int> corrected;
+    bool any = false;
     for (const auto &[object, fraction] : fractions)
         if (any_whole && fraction <= ccd::hardly_moves)
-            corrected.push_back(object);
+            stays_[object] = any = true;
         else
             std::fill(corrections.begin() + mesh_.objects[object].first, corrections.begin() + mesh_.objects[object].end,
                       Correction{});
@@ -151,22 +159,64 @@ std::vector<int> MoveLimiter::correct_locally(const std::vector<Impact> &impacts
     spread_correction(pairs_.candidates(), start_, move_.to, max_strain, corrections);
     for (int v = 0; v < int(corrections.size()); ++v)
         if (corrections[v].weight > 0.0) scale_motion(v, 1.0 - corrections[v].weight);
-    return corrected;
+    return any;
 }
 
-void MoveLimiter::limit_whole(const std::vector<Impact> &impacts, const std::vector<int> &corrected) {
-    std::vector<Event> events; // a heap
-    for (const Impact &impact : impacts) add_event(impact, events);
-    const auto is_corrected = [&](int object) { return std::binary_search(corrected.begin(), corrected.end(), object); };
-    while (!events.empty()) {
-        std::pop_heap(events.begin(), events.end(), std::greater<>());
-        const Event e = events.back();
-        events.pop_back();
-        if ((e.a >= 0 && fraction_[e.a] != e.fraction_a) || (e.b >= 0 && fraction_[e.b] != e.fraction_b))
-            continue; // superseded
-        for (const int object : {e.a, e.b})
-            if (object >= 0 && !is_corrected(object)) limit_object(object, e.fraction, events);
+void MoveLimiter::limit_whole(const std::vector<Impact> &impacts) {
+    for (const Impact &impact : impacts) {
+        const auto [a, b] = whole_objects_of(impact);
+        if (a >= 0 || b >= 0) add_event(impact, std::max(a, b));
     }
+    for (++pass_;; ++pass_) {
+        const std::vector<int> objects = collect<int>(int(events_.size()), [&](int object, std::vector<int> &all) {
+            std::erase_if(events_[object], [&](const Event &event) { return is_superseded(event); });
+            if (!events_[object].empty()) all.push_back(object);
+        });
+        if (objects.empty()) break;
+        find_first_events(objects);
+        struct Limit {
+            int object;
+            double fraction;
+        };
+        const std::vector<Limit> found = collect<Limit>(int(objects.size()), [&](int k, std::vector<Limit> &all) {
+            for (const Event &event : events_[objects[k]])
+                if (is_first_of_both(event))
+                    for (const int object : {event.a, event.b})
+                        if (limits(object, event.fraction)) all.push_back({object, event.fraction});
+        });
+        parallel_for(int(found.size()), few_objects, [&](int k) { limit_object(found[k].object, found[k].fraction); });
+        parallel_chunks(int(found.size()), 1, [&](int k) { find_events(found[k].object); });
+    }
+}
+
+// Of each object, among the events of `objects`.
+void MoveLimiter::find_first_events(const std::vector<int> &objects) {
+    const auto for_ends = [&](const auto &work) {
+        parallel_for(int(objects.size()), few_objects, [&](int k) {
+            for (const Event &event : events_[objects[k]])
+                for (const int object : {event.a, event.b})
+                    if (object >= 0) work(first_[object], event);
+        });
+    };
+    for_ends([](std::atomic<const Event *> &first, const Event &) { first.store(nullptr, std::memory_order_relaxed); });
+    for_ends([](std::atomic<const Event *> &first, const Event &event) {
+        const Event *found = first.load(std::memory_order_acquire);
+        while ((!found || event < *found) && !first.compare_exchange_weak(found, &event, std::memory_order_acq_rel)) {
+        }
+    });
+}
+
+bool MoveLimiter::is_first_of_both(const Event &event) const {
+    return (event.a < 0 || first_[event.a] == &event) && (event.b < 0 || first_[event.b] == &event);
+}
+
+bool MoveLimiter::is_superseded(const Event &event) const {
+    return (event.a >= 0 && fraction_[event.a] != event.fraction_a) || (event.b >= 0 && fraction_[event.b] != event.fraction_b);
+}
+
+// Whether an event at `fraction` shortens the motion of an object.
+bool MoveLimiter::limits(int object, double fraction) const {
+    return object >= 0 && !stays_[object] && fraction < fraction_[object];
 }
 
 // Pairs of an object lead all over memory: those to come are loaded while one is tested.
@@ -180,23 +230,29 @@ void MoveLimiter::prefetch(View<CandidatePair *> pairs, size_t k) const {
     }
 }
 
-// Adds the events of the impacts that this causes.
-void MoveLimiter::limit_object(int object, double fraction, std::vector<Event> &events) {
-    if (fraction >= fraction_[object]) return;
+void MoveLimiter::limit_object(int object, double fraction) {
     const double factor = fraction / fraction_[object];
     for (int v = mesh_.objects[object].first; v < mesh_.objects[object].end; ++v)
         if (mesh_.moves[v]) scale_motion(v, factor);
     fraction_[object] = fraction;
+    limited_in_[object] = pass_;
+}
+
+// Those of an object that has been limited. A pair of two such objects is that of the first one.
+void MoveLimiter::find_events(int object) {
+    events_[object].clear();
     const View<CandidatePair *> pairs = pairs_of_object_.of(object);
     for (size_t k = 0; k < pairs.size(); ++k) {
         prefetch(pairs, k);
         CandidatePair &pair = *pairs[k];
-        if (fraction_[pair.object[0]] == fraction_[pair.object[1]]) continue; // its impact is known from before
+        const int other = pair.object[0] == object ? pair.object[1] : pair.object[0];
+        if (fraction_[object] == fraction_[other]) continue; // its impact is known from before
+        if (limited_in_[other] == pass_ && other < object) continue;
         if (!may_have_impact(pair)) continue;
         const auto &a = mesh_.edges[pair.primitive[0]], &b = mesh_.edges[pair.primitive[1]];
         if (whole_object_of(a[0], a[1]) < 0 || whole_object_of(b[0], b[1]) < 0) continue;
         const double toi = time_of_impact(mesh_, pair, start_, move_.to);
-        if (toi <= 1.0) add_event({{a[0], a[1], b[0], b[1]}, toi}, events);
+        if (toi <= 1.0) add_event({{a[0], a[1], b[0], b[1]}, toi}, object);
     }
 }
 
@@ -211,9 +267,8 @@ bool MoveLimiter::may_have_impact(const CandidatePair &pair) const {
 
 // Of two objects with different fractions the one that goes farther stops just before it meets the other, and goes as far as
 // that one at least. With one fraction for both, the pair with the least room would stop all hair in contact with it.
-void MoveLimiter::add_event(const Impact &impact, std::vector<Event> &events) const {
+void MoveLimiter::add_event(const Impact &impact, int object) {
     const auto [a, b] = whole_objects_of(impact);
-    if (a < 0 && b < 0) return;
     const double fraction_a = a >= 0 ? fraction_[a] : 1.0, fraction_b = b >= 0 ? fraction_[b] : 1.0;
     double fraction = 0.0;
     if (round_ < ccd::whole_rounds) {
@@ -222,15 +277,14 @@ void MoveLimiter::add_event(const Impact &impact, std::vector<Event> &events) co
         fraction =
             differ ? std::max(least, ccd::before_impact * impact.toi * most) : impact.toi * (a >= 0 ? fraction_a : fraction_b);
     }
-    events.push_back({fraction, a, b, fraction_a, fraction_b});
-    std::push_heap(events.begin(), events.end(), std::greater<>());
+    if (limits(a, fraction) || limits(b, fraction)) events_[object].push_back({fraction, a, b, fraction_a, fraction_b});
 }
 
 void MoveLimiter::scale_motion(int v, double factor) {
     const Vec3 &start = start_[v];
     move_.to[v] = start + factor * (move_.to[v] - start);
     if (!move_.apex.empty()) move_.apex[v] = start + factor * (move_.apex[v] - start);
-    mark_changed(v);
+    changed_[v] = 1;
 }
 
 } // namespace
