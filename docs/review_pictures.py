@@ -10,6 +10,7 @@
 from __future__ import annotations
 
 import argparse
+import base64
 import io
 import re
 import shutil
@@ -20,6 +21,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
 from PIL import Image
 from playwright.sync_api import Browser, sync_playwright
 
@@ -180,6 +183,55 @@ def tablet(browser: Browser) -> Image.Image:
         return page.taken()
 
 
+# Looks and views [degrees] of live pictures beside renders, their size [pixels] and samples of the renders.
+BESIDE, VIEWS, SQUARE, SAMPLES = ("types/3B", "types/4C", "looks/box_braids"), ((0, 5), (140, 10), (90, 5)), 320, 32
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+
+
+def decoded(url: str) -> NDArray[np.float64]:
+    return np.asarray(Image.open(io.BytesIO(base64.b64decode(url.split(",")[1]))).convert("RGB"), np.float64)
+
+
+def pair(page: Page, look: str, azimuth: float, elevation: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Render in place and live picture from a side. Prints the mean luminance of the hair, live by render."""
+    page.get(f"ringlet.viewer.frame({azimuth}, {elevation}, {{ x: 0, y: 0, width: {SQUARE}, height: {SQUARE} }})")
+    page.page.get_by_label("Samples per pixel").evaluate(
+        f"(list) => {{ list.append(new Option('', '{SAMPLES}')); list.value = '{SAMPLES}'; }}"
+    )
+    page.get(f"ringlet.render.start({{ width: {SQUARE}, height: {SQUARE} }})")
+    page.until(f"ringlet.render.picture?.samples == {SAMPLES}", 1800.0)
+    read = "(r = new FileReader(), r.onload = () => done(r.result), r.readAsDataURL(ringlet.render.picture.png))"
+    render = decoded(page.get(f"new Promise((done) => {{ let r; {read}; }})"))
+    drawn = f"ringlet.viewer.drawAt({SQUARE}, {SQUARE}, false).toDataURL('image/png')"
+    live, bare = (decoded(page.get(f"(ringlet.viewer.showHair({hair}), {drawn})")) for hair in ("true", "false"))
+    page.get("ringlet.viewer.showHair(true)")
+    hair = np.abs(live - bare).max(axis=2) > 8
+    mean = [(picture[hair] @ LUMINANCE).mean() for picture in (live, render)]
+    print(f"{look}, {azimuth}°: {mean[0] / mean[1]:.2f}")
+    return render, live
+
+
+def beside(browser: Browser) -> Image.Image:
+    """Renders in place, and the live picture right of each: looks in rows, at their own density, from three sides."""
+    rows = []
+    for look in BESIDE:
+        with tempfile.TemporaryDirectory() as folder:
+            for part in ("types", "looks", "child"):
+                shutil.copytree(EXAMPLE.parent / part, Path(folder, part))
+            file = Path(folder, "look.recipe.toml")
+            file.write_text(f'ringlet = 2\nextends = "{look}.recipe.toml"\nname = "{Path(look).name}"\n')
+            server = Server(file)
+            server.start()
+            try:
+                page = opened(browser, server, SMALL, "dark")
+                rows.append(np.hstack([picture for view in VIEWS for picture in pair(page, look, *view)]))
+                page.page.context.close()
+            finally:
+                server.kill()
+    whole = Image.fromarray(np.vstack(rows).astype(np.uint8))
+    return whole.resize((whole.width * 3 // 4, whole.height * 3 // 4), Image.Resampling.LANCZOS)
+
+
 class Movie:
     """Pages next to each other, as a movie of stills."""
 
@@ -279,7 +331,7 @@ def moving(browser: Browser) -> Movie:
 
 
 PICTURES: dict[str, Callable[[Browser], Image.Image | Movie]] = {
-    made.__name__: made for made in (review, lock, sculpt, shot, live, tablet, people, moving)
+    made.__name__: made for made in (review, lock, sculpt, shot, live, tablet, beside, people, moving)
 }
 
 SIZES = (DESKTOP, WIDE, TABLET, LYING, PHONE)

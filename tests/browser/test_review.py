@@ -55,6 +55,37 @@ def test_gpu_hairs_equal_those_of_the_core(opened: Any, folder: Path, curl: str)
     assert not review.errors
 
 
+def test_hairs_know_where_in_the_tube_of_their_lock_they_are_and_how_dense_it_is(opened: Any, folder: Path):
+    recipe = folder / "small.recipe.toml"
+    recipe.write_text(recipe.read_text().replace("per_lock = 3", 'per_lock = 300\nlock_radius = "4 mm"'))
+    review: Review = opened(pixels=0.1)
+    review.picture()
+    groom = build_groom(recipe)
+    hairs = build_hairs(groom)
+    count, points = len(hairs.curves), int(hairs.curves.counts[0])
+    read = review.get("""(() => {
+        const { renderer, hair: { a: hair } } = ringlet.viewer, { width, height } = hair.carry.target;
+        hair.read(renderer, 1e6);
+        const values = new Uint8Array(4 * width * height);
+        renderer.readRenderTargetPixels(hair.carry.target, 0, 0, width, height, values, undefined, 1);
+        return Array.from(values);
+    })()""")
+    tubes = np.array(read)[: 4 * count * points].reshape(count, points, 4) / 255.0
+    order = spread(np.diff(hairs.layout["first"]))
+    middle = points // 2  # there hairs are no more held to the skin
+    places = hairs.curves.points.reshape(8, -1, points, 3)[:, :, middle]
+    locks = groom.locks.points.reshape(8, -1, 3)
+    away = np.linalg.norm(places[:, :, None] - locks[:, None], axis=3).min(axis=2).ravel()[order]
+    widths = hairs.curves.point["width"].reshape(count, points)[order, middle]
+    radius = np.sqrt(2.0 * (away**2).mean())
+    tube = tubes[:, middle]
+    off = np.linalg.norm(2.0 * tube[:, :3] - 1.0, axis=1) - np.minimum(away / radius, 1.0)
+    assert np.percentile(np.abs(off), 90) < 0.1  # others are nearer to another turn of the coil
+    depth = (tube[:, 3] / (1.0 - tube[:, 3])).mean()
+    assert depth == pytest.approx(300 * widths.mean() / (np.pi * radius), rel=0.06)
+    assert not review.errors
+
+
 @pytest.mark.parametrize("curl", ["", CURL], ids=["as their lock", "with a curl of their own"])
 def test_gpu_hairs_of_several_grooms_equal_those_of_the_core(opened: Any, folder: Path, curl: str):
     """Grooms differ in what is the same along the hairs of each."""

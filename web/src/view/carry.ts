@@ -10,11 +10,12 @@ import {
   RawShaderMaterial,
   RGBAFormat,
   Scene,
+  UnsignedByteType,
   type WebGLRenderer,
   WebGLRenderTarget,
 } from "three";
 import type { Hairs } from "../protocol";
-import { Clumps } from "./clumps";
+import { Tubes } from "./tubes";
 import { MOST_VERTICES } from "./rods";
 import { LOOKUP } from "./shaders";
 import type { Slices, Work } from "./slices";
@@ -51,7 +52,9 @@ uniform float along[MOST_VERTICES];   // places of the vertices of a rod on a lo
 uniform int vertices;
 uniform highp sampler2D lockEase;     // how far points of locks are seen from rest after a change
 uniform float easing;                 // the share of it that is left
-out vec4 result;
+uniform highp sampler2D lockTube;     // of each lock: widths of hairs; mean squares of offsets, of what the profile leaves, and of roots
+layout(location = 0) out vec4 result;
+layout(location = 1) out vec4 tube;
 
 vec2 knot(highp sampler2D values, int hair, int i) {
   vec4 two = lookup(values, hair * ((knots + 1) / 2) + i / 2);
@@ -76,8 +79,9 @@ vec3 eased(int row, float t) {
   return easing > 0.0 ? easing * mix(lookup(lockEase, row).xyz, lookup(lockEase, row + 1).xyz, t) : vec3(0.0);
 }
 
-// A place on a lock at so many points from its root. Catmull–Rom for the points, straight for the frame.
-vec3 onLock(vec4 lock, float at, vec2 across, vec4 turned) {
+// A place on a lock at so many points from its root, and how far from there a hair is. Catmull–Rom for the points, straight
+// for the frame.
+vec3 onLock(vec4 lock, float at, vec2 across, vec4 turned, out vec3 away) {
   int last = int(lock.y), j = min(int(at), last), row = int(lock.x) + j;
   float t = j == last ? 0.0 : at - float(j);
   vec3 p0 = lookup(lockPoint, row - 1).xyz, p1 = lookup(lockPoint, row).xyz;
@@ -85,8 +89,9 @@ vec3 onLock(vec4 lock, float at, vec2 across, vec4 turned) {
   vec3 on = p1 + 0.5 * t * ((p2 - p0) + t * ((2.0 * p0 - 5.0 * p1 + 4.0 * p2 - p3) + t * (3.0 * (p1 - p2) + p3 - p0)));
   vec3 a = mix(lookup(lockA, row).xyz, lookup(lockA, row + 1).xyz, t);
   vec3 b = mix(lookup(lockB, row).xyz, lookup(lockB, row + 1).xyz, t);
-  vec3 place = on + across.x * a + across.y * b + eased(row, t);
-  return curled ? place + curl(row, t, turned) : place;
+  away = across.x * a + across.y * b;
+  if (curled) away += curl(row, t, turned);
+  return on + eased(row, t);
 }
 
 // The same on the polyline of the lock, which touches nothing.
@@ -140,18 +145,28 @@ void main() {
   }
 
   float at = lock.y * (joins.x + (sits.y - joins.x) * mix(u, lookup(ramps, 2 * station + 1).x, joins.y));
-  if (joins.x > 0.0) root.xyz += lookup(lockPoint, int(lock.x)).xyz - onLock(lock, joins.x * lock.y, vec2(0.0), vec4(0.0));
+  vec3 away;
+  if (joins.x > 0.0) root.xyz += lookup(lockPoint, int(lock.x)).xyz - onLock(lock, joins.x * lock.y, vec2(0.0), vec4(0.0), away);
   float part = at / lock.y;
-  vec3 place = carried(lock, part, onLock(lock, at, across, turned) + ramp.y * root.xyz);
+  vec3 on = onLock(lock, at, across, turned, away);
+  vec3 place = carried(lock, part, on + away + ramp.y * root.xyz), within = place - carried(lock, part, on);
   if (mixed.z > 0.0) { // drawn to a neighbouring lock: the same hair about that one
     vec4 other = lookup(lockPlace, int(mixed.y));
     vec3 there = root.xyz + lookup(lockPoint, int(lock.x)).xyz - lookup(lockPoint, int(other.x)).xyz;
-    vec3 theirs = carried(other, part, onLock(other, part * other.y, across, turned) + ramp.y * there);
+    on = onLock(other, part * other.y, across, turned, away);
+    vec3 theirs = carried(other, part, on + away + ramp.y * there);
     place += mixed.z * ramp.w * (theirs - place);
   }
   float keeps = texelFetch(left, ivec2(gl_FragCoord.xy), 0).r;
   if (keeps < 1.0) place = mix(carried(lock, part, onPolyline(lock, at)), place, keeps);
   result = vec4(place, root.w * ramp.z);
+
+  // The lock is a tube here: where in it the hair is, and the optical depth of its radius, which is that of a disk.
+  vec4 of = lookup(lockTube, int(sits.x));
+  vec2 follows = vec2(1.0 - ramp.y, ramp.y);
+  float radius = sqrt(2.0 * dot(follows * follows, vec2(of.y * ramp.x * ramp.x + of.z, of.w)));
+  float depth = of.x * ramp.z / max(3.1415927 * radius, 1e-6);
+  tube = vec4(0.5 + 0.5 * keeps * within / max(max(radius, length(within)), 1e-6), depth / (1.0 + depth));
 }
 `;
 
@@ -163,7 +178,7 @@ export class Carry {
   private readonly material: RawShaderMaterial;
   private readonly numbers: Record<string, Numbers> = {};
   private readonly left: Shares;
-  private readonly clumps: Clumps;
+  private readonly tubes: Tubes;
   private roots: Float32Array | null = null;
   /** Rows of the target that are up to date. */
   private carried = 0;
@@ -176,7 +191,7 @@ export class Carry {
     most: number,
   ) {
     this.count = Math.min(hairs.count, Math.floor((most * WIDTH) / hairs.points));
-    this.clumps = new Clumps(hairs);
+    this.tubes = new Tubes(hairs);
     this.left = new Shares(this.count * hairs.points);
     this.target = target(this.count * hairs.points);
     this.material = new RawShaderMaterial({
@@ -216,6 +231,7 @@ export class Carry {
     this.setRoots(hairs.root);
     this.put("rodMotion", new Float32Array(4));
     this.put("lockEase", new Float32Array(4));
+    this.put("lockTube", new Float32Array(4));
   }
 
   /** Mean diameter of the hairs at their thickest [m]. */
@@ -225,7 +241,12 @@ export class Carry {
   }
 
   get points() {
-    return this.target.texture;
+    return this.target.textures[0];
+  }
+
+  /** Where each point is in the tube of its lock, by its radius, and the optical depth of the radius. */
+  get within() {
+    return this.target.textures[1];
   }
 
   /** A texture by the name that it has in the shader. */
@@ -265,7 +286,7 @@ export class Carry {
     this.put("lockB", table.b);
     this.put("lockU", table.u);
     this.put("lockV", table.v);
-    this.put("hairClumping", this.clumps.indices(squaredRadii(table)));
+    this.put("lockTube", this.tubes.measure(squaredRadii(table)));
     // Locks with the frames of their coils follow the hairs that need them: until then these follow their lock.
     this.material.uniforms["curled"].value = this.hairs.coil.length > 0 && table.curled;
     this.setPlaces(table);
@@ -339,7 +360,8 @@ export class Carry {
 }
 
 function target(texels: number): WebGLRenderTarget {
-  return new WebGLRenderTarget(WIDTH, Math.max(1, Math.ceil(texels / WIDTH)), {
+  const made = new WebGLRenderTarget(WIDTH, Math.max(1, Math.ceil(texels / WIDTH)), {
+    count: 2,
     type: FloatType,
     format: RGBAFormat,
     minFilter: NearestFilter,
@@ -347,6 +369,8 @@ function target(texels: number): WebGLRenderTarget {
     depthBuffer: false,
     generateMipmaps: false,
   });
+  made.textures[1].type = UnsignedByteType;
+  return made;
 }
 
 /** Knots of each hair in whole texels: an odd number gets one more at its end, which nobody reads. */

@@ -18,7 +18,7 @@ import {
   type WebGLRenderer,
   WebGLRenderTarget,
 } from "three";
-import { LOOKUP, TONE } from "./shaders";
+import { LOOKUP, TONE, TUBES } from "./shaders";
 import type { Slices, Work } from "./slices";
 import type { Grid, Matter } from "./grid";
 
@@ -31,14 +31,14 @@ precision highp sampler2D;
 ${LOOKUP}
 ${TONE}
 uniform highp sampler2D hairPoints;
-uniform highp sampler2D hairClumping; // clumping index, four hairs a texel
+${TUBES}
 uniform int points, every, firstHair;
 uniform vec3 origin;
 uniform ivec3 counts;
 uniform int across;   // slices side by side
 uniform vec2 extent;  // of the picture [pixels]
 uniform float voxel, share;
-uniform bool tangents; // adds up directions from root to tip, in place of tones
+uniform bool tangents; // adds up directions from root to tip and hairs as if they were in no order, in place of tones
 out vec4 mass;
 void main() {
   int hair = gl_InstanceID + firstHair, k = gl_VertexID * every, at = hair * points;
@@ -51,10 +51,11 @@ void main() {
     way += distance(before, next);
   }
   ivec3 cell = ivec3(floor((here.xyz - origin) / voxel));
-  float projected = lookup(hairClumping, hair / 4)[hair % 4] * 0.7853982 * here.w * way / (voxel * voxel * voxel);
+  float projected = 0.7853982 * here.w * way / (voxel * voxel * voxel);
   vec3 along = normalize(next - here.xyz + vec3(0.0, 1e-9, 0.0));
   vec3 value = tangents ? along : toneOf(hair, float(k) / float(points - 1));
-  mass = projected / share * vec4(value, 1.0);
+  float index = clumping(tubeOf(at + k).w);
+  mass = projected / share * vec4(index * value, tangents ? 1.0 : index);
   vec2 pixel = vec2(ivec2(cell.z % across, cell.z / across) * counts.xy + cell.xy) + 0.5;
   bool outside = any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, counts));
   gl_Position = outside ? vec4(2.0, 2.0, 2.0, 1.0) : vec4(2.0 * pixel / extent - 1.0, 0.0, 1.0);
@@ -123,7 +124,7 @@ export class Density {
   }
 
   /** Extinction, tone and direction of the hair in the voxels. */
-  *measure(renderer: WebGLRenderer, grid: Grid, hairs: number, slices: Slices): Work<Pick<Matter, "hair" | "tone" | "along">> {
+  *measure(renderer: WebGLRenderer, grid: Grid, hairs: number, slices: Slices): Work<Pick<Matter, "hair" | "loose" | "tone" | "along">> {
     const [nx, ny, nz] = grid.counts;
     const across = Math.ceil(Math.sqrt(nz));
     const [width, height] = [across * nx, Math.ceil(nz / across) * ny];
@@ -143,8 +144,8 @@ export class Density {
       yield* this.add(renderer, target, drawn, slices);
       sums.push(yield* slices.compute(this.sum(renderer, target, grid, across)));
     }
-    const [[x, y, z, hair], [dx, dy, dz]] = sums;
-    return { hair, tone: [x, y, z], along: [dx, dy, dz] };
+    const [[x, y, z, hair], [dx, dy, dz, loose]] = sums;
+    return { hair, loose, tone: [x, y, z], along: [dx, dy, dz] };
   }
 
   /** Adds up hairs on the graphics card. */

@@ -49,10 +49,11 @@ export interface Surface {
   triangles: Uint32Array;
 }
 
-/** What fills the grid: extinction by hair [1/m], its q and its direction times that, optical depth and albedo of skin. */
+/** What fills the grid: extinction by hair [1/m], the same if hairs did not cover one another in their locks, its q and its direction times that, optical depth and albedo of skin. */
 export interface Matter {
   grid: Grid;
   hair: Float32Array;
+  loose: Float32Array;
   tone: [Float32Array, Float32Array, Float32Array];
   along: [Float32Array, Float32Array, Float32Array];
   skin: Float32Array;

@@ -105,7 +105,7 @@ export class Hair {
   ) {
     this.shared = {
       hairPoints: { value: null },
-      hairClumping: { value: null },
+      hairTubes: { value: null },
       points: { value: 2 },
       hairColor: { value: null },
       stations: { value: 0 },
@@ -126,6 +126,7 @@ export class Hair {
       hairPlace: { value: null },
       lockPlace: { value: null },
       lockPoint: { value: null },
+      lockTube: { value: null },
       fiberTable: { value: null },
       fiberTransport: { value: null },
       variance: { value: new Vector3() },
@@ -378,8 +379,8 @@ export class Hair {
     if (!this.carry || !this.table) return;
     yield* this.carry.update(renderer, Math.min(this.count, Math.ceil(drawings * fraction * this.count) + 1), slices);
     this.shared["hairPoints"].value = this.carry.points;
-    this.shared["hairClumping"].value = this.carry.texture("hairClumping");
-    for (const name of ["hairPlace", "lockPlace", "lockPoint"])
+    this.shared["hairTubes"].value = this.carry.within;
+    for (const name of ["hairPlace", "lockPlace", "lockPoint", "lockTube"])
       this.material.uniforms[name].value = this.carry.texture(name);
   }
 

@@ -68,7 +68,7 @@ export class Scattering {
 
   /** Matter and beams of the voxels, from the eight of the grid in each. */
   private *gather(
-    { grid, hair, tone, along, skin, albedo }: Matter,
+    { grid, hair, loose, tone, along, skin, albedo }: Matter,
     beams: Beam[],
     depth: Four,
     passed: Four,
@@ -94,13 +94,14 @@ export class Scattering {
             }
             continue;
           }
-          let [sigma, solid] = [0, 0];
+          let [sigma, free, solid] = [0, 0, 0];
           const [q, bare, mean] = [[0, 0, 0], [0, 0, 0], [0, 0, 0]];
           const arriving = [0, 0, 0, 0];
           const optical = [0, 0, 0, 0];
           for (const corner of corners) {
             const at = first + corner;
             sigma += hair[at] / 8;
+            free += loose[at] / 8;
             solid += skin[at] / 4;
             for (let c = 0; c < 3; c++) {
               q[c] += tone[c][at] / 8;
@@ -125,7 +126,7 @@ export class Scattering {
             const color = sigma > 0 ? q[c] / sigma : 0;
             const [omega, g] = [at(t.albedo, color), at(t.forward, color)];
             const scaled = sigma * (1 - omega * g * g) * 2 * grid.size;
-            const rest = (omega * (1 - g * g)) / (1 - omega * g * g);
+            const rest = escaping((omega * (1 - g * g)) / (1 - omega * g * g), free > 0 ? sigma / free : 1);
             const total = scaled + solid;
             this.keep[c][to] = Math.exp(-total);
             this.scatter[c][to] = total > 0 ? (rest * scaled + wall(solid > 0 ? bare[c] / solid : 0) * solid) / total : 0;
@@ -179,6 +180,12 @@ export class Scattering {
     }
     for (let i = 0; i < mean.length; i++) mean[i] = sum[i] / 6;
   }
+}
+
+/** Albedo of a clump of hairs of an albedo, with a clumping index: a scattered photon leaves it with that probability, or
+ * meets another of its hairs (Smolander and Stenberg 2005). */
+function escaping(albedo: number, index: number): number {
+  return (albedo * index) / (1 - albedo * (1 - index));
 }
 
 /** Albedo of voxels of a wall that sends as much as a diffuse one of an albedo a, lit from one side: they light each other. */

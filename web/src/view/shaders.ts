@@ -58,6 +58,22 @@ vec3 toneOf(int hair, float along) {
 }
 `;
 
+/** The tubes of locks, by the points of their hairs. */
+export const TUBES = /* glsl */ `
+uniform sampler2D hairTubes; // place by the radius, and the optical depth of that
+vec4 tubeOf(int point) {
+  vec4 of = lookup(hairTubes, point);
+  return vec4(2.0 * of.xyz - 1.0, of.w / max(1.0 - of.w, 0.004));
+}
+
+// The clumping index of hairs: light meets a lock as a tube, and hairs behind others take little away (Nilson 1971).
+// depth: of the radius, which is 2/π of that of the mean way through
+float clumping(float depth) {
+  float mean = 1.5707963 * depth;
+  return mean > 1e-3 ? (1.0 - exp(-mean)) / mean : 1.0;
+}
+`;
+
 /** The points of hairs, of which each `stride`th is drawn. */
 export const POINTS = /* glsl */ `
 uniform highp sampler2D hairPoints; // position and width, point by point
