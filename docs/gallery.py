@@ -61,6 +61,10 @@ PAGE_FOOT = """
 - Most pictures are from before the denoiser kept single hairs.
 - Box braids: two braids hang off the cheek.
 - Locs: at part lines, hair gathers in tufts; ridges along a loc are too even.
+- Locs with new growth: hair leaves part lines in teeth, and baby hair is hardly seen.
+- Wolf cut: clumps look matted, and the fringe is torn.
+- Long box braids: some that start beside the face hang off the chest.
+- On the adult, a flesh tab of the collar bone comes through the shirt; the torso has none.
 - Cornrows: at the temple, the first hairs of a row begin on a straight line across it, not on the hairline.
 - Flat twists: the rows over the ears are wide.
 - Cornrows and flat twists: tails of neighbouring rows overlap at the nape.
