@@ -146,6 +146,39 @@ def lock(browser: Browser) -> Image.Image:
         return page.taken()
 
 
+MOMENTS = (0.25, 0.5, 1.0, 2.0)  # after a page is asked for [s]
+
+
+def start(browser: Browser) -> Image.Image:
+    """What a page shows in its first two seconds: the last frame that the browser had at each moment.
+
+    The example has all of its locks and hairs, and was open before in the same server and browser.
+    """
+    with served("curls.recipe.toml", {}) as server:
+        opened(browser, server, SMALL, "dark").page.close()
+        page = browser.contexts[-1].new_page()
+        frames: list[tuple[float, str]] = []
+        session = page.context.new_cdp_session(page)
+
+        def take(frame: dict[str, Any]) -> None:
+            frames.append((frame["metadata"]["timestamp"], frame["data"]))
+            session.send("Page.screencastFrameAck", {"sessionId": frame["sessionId"]})
+
+        session.on("Page.screencastFrame", take)
+        session.send("Page.startScreencast", {"format": "png"})
+        page.goto(server.address, wait_until="commit")
+        page.wait_for_timeout(1000 * (MOMENTS[-1] + 2.0))  # frames come later than they are shown
+        begin = page.evaluate("performance.timeOrigin") / 1000
+        page.context.close()
+    strip = Image.new("RGB", (400 * len(MOMENTS), 256))
+    for k, moment in enumerate(MOMENTS):
+        shown = [data for time, data in frames if time <= begin + moment]
+        if shown:
+            still = Image.open(io.BytesIO(base64.b64decode(shown[-1]))).convert("RGB")
+            strip.paste(still.resize((400, 256), Image.Resampling.LANCZOS), (400 * k, 0))
+    return strip
+
+
 def sculpt(browser: Browser) -> Image.Image:
     with page_of(browser, "curls.recipe.toml", DESKTOP, "dark") as page:
         page.page.keyboard.press("b")
@@ -202,6 +235,7 @@ def pair(page: Page, look: str, azimuth: float, elevation: float) -> tuple[NDArr
     page.until(f"ringlet.render.picture?.samples == {SAMPLES}", 1800.0)
     read = "(r = new FileReader(), r.onload = () => done(r.result), r.readAsDataURL(ringlet.render.picture.png))"
     render = decoded(page.get(f"new Promise((done) => {{ let r; {read}; }})"))
+    page.get("ringlet.viewer.pace.needed = () => 5")  # drawings: all hairs of 4C take 48
     drawn = f"ringlet.viewer.drawAt({SQUARE}, {SQUARE}, false).toDataURL('image/png')"
     live, bare = (decoded(page.get(f"(ringlet.viewer.showHair({hair}), {drawn})")) for hair in ("true", "false"))
     page.get("ringlet.viewer.showHair(true)")
@@ -331,7 +365,7 @@ def moving(browser: Browser) -> Movie:
 
 
 PICTURES: dict[str, Callable[[Browser], Image.Image | Movie]] = {
-    made.__name__: made for made in (review, lock, sculpt, shot, live, tablet, beside, people, moving)
+    made.__name__: made for made in (start, review, lock, sculpt, shot, live, tablet, beside, people, moving)
 }
 
 SIZES = (DESKTOP, WIDE, TABLET, LYING, PHONE)
