@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from copy import copy
 from pathlib import Path
 from typing import Any
 
@@ -129,6 +130,17 @@ def test_a_take_is_a_snapshot_that_plays_for_all_and_survives_a_restart(folder: 
     assert not list(files.iterdir())
 
 
+def test_no_take_of_another_groom_is_kept(groom: Groom) -> None:
+    still, moved = recorded(groom, 0)[0], recorded(groom, 2)[0]
+    with pytest.raises(ringlet.UserError, match="hair does not move live"):
+        still.take(groom)
+    with pytest.raises(ringlet.UserError, match="the groom has changed; keep the take once it is shown in motion"):
+        moved.take(copy(groom))
+    moved.clear()
+    with pytest.raises(ringlet.UserError, match="hair does not move live"):
+        moved.take(groom)
+
+
 def test_what_cannot_be_kept_or_played_is_said_in_one_line(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     files = folder / "small.review/snapshots"
     with serving(folder) as client, page(client) as one:
@@ -142,8 +154,6 @@ def test_what_cannot_be_kept_or_played_is_said_in_one_line(folder: Path, monkeyp
             assert re.fullmatch(r".*cannot be written \(No space left on device\); .*", one.receive_trouble())
         assert not list(files.iterdir())
         one.send(kind="set", changes=[[["curl", "width"], 2.0]], gesture=1)
-        one.send(kind="keep_take", look=LOOK, picture=picture())
-        assert "the groom has changed" in one.receive_trouble()
         one.receive("live_step", key=one.receive("rods")["key"])
         nod(one)
         taken = keep(one)
