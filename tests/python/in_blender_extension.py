@@ -112,11 +112,16 @@ def off_skin(thing: bpy.types.Object, head: bpy.types.Object) -> float:
     seen = head.evaluated_get(bpy.context.evaluated_depsgraph_get())
     mesh = seen.to_mesh()
     places = [seen.matrix_world @ vertex.co for vertex in mesh.vertices]
-    tree = BVHTree.FromPolygons(places, [list(face.vertices) for face in mesh.polygons])
+    mesh.calc_loop_triangles()  # as they are drawn: a bent quad has another surface by its other diagonal
+    tree = BVHTree.FromPolygons(places, [list(triangle.vertices) for triangle in mesh.loop_triangles])
     seen.to_mesh_clear()
+    return max(tree.find_nearest(Vector(place))[3] for place in roots(thing))
+
+
+def roots(thing: bpy.types.Object) -> np.ndarray:
+    """First points of curves in world space, in the current frame."""
     counts = of("curves").counts_of(thing.evaluated_get(bpy.context.evaluated_depsgraph_get()).data)
-    rows = np.concatenate([[0], np.cumsum(counts)[:-1]])
-    return max(tree.find_nearest(Vector(place))[3] for place in points(thing)[rows])
+    return points(thing)[np.cumsum(counts) - counts]
 
 
 def duplicate(head: bpy.types.Object, *, everything: bool = False, linked: bool = False) -> bpy.types.Object:
@@ -273,19 +278,23 @@ def production(folder: Path) -> dict:
     found: dict = {"names": sorted(one.name_full for one in characters), "still": {}, "moving": {}, "rest": {}}
     for head in characters:
         head.ringlet.recipe_guides.length__value = 0.06  # in any pose
+    bo.modifiers["finer"].levels = 0  # at any level
     scene.frame_set(4)
     wait(settled)
     found["messages"] = [
         of("grooming").state_of(one).message + of("grooming").state_of(one).still for one in characters
     ]
     scene.frame_set(1)
+    bo.modifiers["finer"].levels = 1
     for head in characters:
         hairs = head.ringlet.hair_curves
         rest = np.empty(3 * len(hairs.data.points), np.float32)
         hairs.data.attributes["position"].data.foreach_get("vector", rest)
         matrix = np.array(hairs.matrix_world)
         rest = rest.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
-        found["rest"][head.name] = float(np.abs(points(hairs) - rest).max())
+        moved = (points(hairs) - rest).reshape(len(hairs.data.curves), -1, 3)
+        onto = moved[:, :1]  # the skin of this level
+        found["rest"][head.name] = [float(np.linalg.norm(one, axis=2).max()) for one in (onto, moved - onto)]
     shots = of("shots").shots
     for head in characters:
         found["still"][head.name] = off_each(head, "hair_curves")
@@ -307,12 +316,17 @@ def production(folder: Path) -> dict:
     return found
 
 
-def off_each(head: bpy.types.Object, name: str) -> list[float]:
-    """The largest distance of a root of its curves from a head, in each of five frames [m]."""
-    found = []
-    for frame in (1, 2, 3, 4, 5):
-        bpy.context.scene.frame_set(frame)
-        found.append(off_skin(getattr(head.ringlet, name), head))
+def off_each(head: bpy.types.Object, name: str) -> list[list[float]]:
+    """The largest distances of roots [m] from a head, and from their own places on its finest skin. There are five
+    frames, at three levels of subdivision and with it out of the viewport."""
+    found, finer, thing = [], head.modifiers["finer"], getattr(head.ringlet, name)
+    places: dict[int, np.ndarray] = {}
+    for level in (2, 1, 0, None):
+        finer.show_viewport, finer.levels = level is not None, level or 0
+        for frame in (1, 2, 3, 4, 5):
+            bpy.context.scene.frame_set(frame)
+            away = roots(thing) - places.setdefault(frame, roots(thing))
+            found.append([off_skin(thing, head), float(np.linalg.norm(away, axis=1).max())])
     return found
 
 
@@ -477,6 +491,10 @@ def slider(_folder: Path) -> dict:
     head.ringlet.recipe_curl.width__value = 0.01
     wait(settled)
     found["mended"] = of("grooming").state_of(head).message
+    head.modifiers.new("fewer", "DECIMATE").ratio = 0.3
+    head.ringlet.recipe_curl.width__value = 0.012
+    wait(settled)
+    found["renumbered"] = of("grooming").state_of(head).still
     return found
 
 

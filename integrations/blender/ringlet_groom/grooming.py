@@ -149,7 +149,7 @@ def head_arrays(head: bpy.types.Object) -> tuple[dict[str, np.ndarray], str]:
 
 
 def rest_skin(head: bpy.types.Object) -> np.ndarray:
-    """Vertices of a head in its rest pose where its modifiers show them; kept, since Blender evaluates it for them."""
+    """Vertices of a head in its rest pose where its modifiers place them; kept, since Blender evaluates it for them."""
     digest = _digest([head_arrays(head)[1], *(f"{one.type} {one.show_viewport}" for one in head.modifiers)])
     if _skins.get(head.session_uid, ("",))[0] != digest:
         _skins[head.session_uid] = digest, meshes.rest_skin(head, rest_matrix(head))
@@ -324,7 +324,10 @@ def show(head: bpy.types.Object, message: Message) -> None:
         thing.matrix_parent_inverse = rest_matrix(head).inverted()
         if "skinprim" in own:
             state.still = skin.bind(thing.data, own["skinprim"], head, head_arrays(head)[0], rest_skin(head))
-            skin.follow(thing, head)
+            if state.still:
+                skin.leave(thing)
+            else:
+                skin.follow(thing, head)
     if (locks := head.ringlet.lock_curves) is not None and head.ringlet.lock_motion is None:
         locks.hide_viewport = locks.hide_render = hairs
 

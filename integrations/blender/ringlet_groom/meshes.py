@@ -59,7 +59,11 @@ def rest_arrays(thing: bpy.types.Object, matrix: Matrix) -> Arrays:
 
 def is_subdivided(thing: bpy.types.Object) -> bool:
     """Whether a mesh is the cage of a Catmull-Clark surface."""
-    return any(one.type == "SUBSURF" and one.subdivision_type == "CATMULL_CLARK" for one in thing.modifiers)
+    return bool(_subdividing(thing))
+
+
+def _subdividing(thing: bpy.types.Object) -> list[bpy.types.Modifier]:
+    return [one for one in thing.modifiers if one.type == "SUBSURF" and one.subdivision_type == "CATMULL_CLARK"]
 
 
 def fingerprint(arrays: Arrays) -> str:
@@ -92,24 +96,29 @@ def readable(things: list[bpy.types.Object]) -> Iterator[None]:
 
 @contextmanager
 def resting(thing: bpy.types.Object) -> Iterator[None]:
-    """Shows a mesh in its rest pose while the block runs: with no modifiers but those that change the topology, and
-    without shape keys."""
+    """Shows a mesh in its rest pose while the block runs: with no modifiers but those that change the topology, without
+    shape keys, and refined where it is a cage: the viewport may show the cage, and a render the surface."""
+    refined = [(one, one.levels, one.show_viewport) for one in _subdividing(thing)]
     switched = [one for one in thing.modifiers if one.type not in GENERATING and one.show_viewport]
     keys, hidden = (thing.show_only_shape_key, thing.active_shape_key_index), thing.hide_viewport
     thing.hide_viewport = False
     for one in switched:
         one.show_viewport = False
+    for one, levels, _ in refined:
+        one.levels, one.show_viewport = max(levels, 1), True
     thing.show_only_shape_key, thing.active_shape_key_index = True, 0
     try:
         yield
     finally:
+        for one, levels, shown in refined:
+            one.levels, one.show_viewport = levels, shown
         for one in switched:
             one.show_viewport = True
         (thing.show_only_shape_key, thing.active_shape_key_index), thing.hide_viewport = keys, hidden
 
 
 def rest_skin(thing: bpy.types.Object, matrix: Matrix) -> np.ndarray:
-    """Vertices of a mesh in the rest pose where the modifiers that change the topology show them, transformed by a
+    """Vertices of a mesh in the rest pose where the modifiers that change the topology place them, transformed by a
     matrix; shape (n, 3) of the n vertices of the mesh itself, or fewer where there are fewer."""
     with resting(thing):
         seen = thing.evaluated_get(bpy.context.evaluated_depsgraph_get())

@@ -13,7 +13,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from . import grooming, identity, meshes
+from . import grooming, identity, meshes, skin
 from .edited_text import stem_of
 from .identity import head_with, new_text
 from .names import distinct, file_name
@@ -277,6 +277,8 @@ def play(head: bpy.types.Object, still: str, moving: str, path: Path, prim: str)
     thing.data.surface = None
     identity.link_with(head, thing)
     follow(thing, open_cache(path), prim)
+    if skin.MODIFIER in source.modifiers:
+        skin.follow(thing, head, bound=False)
     setattr(head.ringlet, moving, thing)
     show_motion(head)
 

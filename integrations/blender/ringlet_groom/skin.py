@@ -1,8 +1,11 @@
-"""Curves that follow the skin before they are simulated, by nodes of Blender that work without the extension.
+"""Curves that follow the skin, by nodes of Blender that work without the extension.
 
-Each curve is bound to a triangle of vertices of the head. The nodes move its root with the triangle, and turn the curve
-as the triangle turns; it keeps its shape. Vertices are those of the mesh itself: modifiers that refine a surface leave
-them in front, and their places on the refined surface are the same at each level.
+Before it is simulated, each curve is bound to a triangle of vertices of the head. The nodes move its root with the
+triangle, and turn the curve as the triangle turns; it keeps its shape. Vertices are those of the mesh itself: modifiers
+that refine a surface leave them in front.
+
+Then each curve, also one that plays a cache, is moved so that its root is on the skin that Blender shows: that of each
+level of subdivision is another.
 """
 
 from __future__ import annotations
@@ -19,14 +22,22 @@ PLACE = "skin_place"  # the root in the frame of the triangle: along both edges,
 UNPOSED = "skin_unposed"  # matrix that takes the rest pose to the frame of the root
 
 
-def follow(thing: bpy.types.Object, head: bpy.types.Object) -> None:
-    """Lets curves that are bound follow a head."""
+def follow(thing: bpy.types.Object, head: bpy.types.Object, *, bound: bool = True) -> None:
+    """Lets curves follow a head: those that are bound with their triangles, and others, which move already, only so
+    that their roots are on it."""
     modifier = thing.modifiers.get(MODIFIER) or thing.modifiers.new(MODIFIER, "NODES")
     modifier.node_group = group = _group()
-    skin = next(item.identifier for item in group.interface.items_tree if item.name == "Skin")
-    if modifier.get(skin) != head:
-        modifier[skin] = head
-        thing.update_tag()
+    sockets = {item.name: item.identifier for item in group.interface.items_tree}
+    for name, value in (("Skin", head), ("Bound", bound)):
+        if modifier.get(sockets[name]) != value:
+            modifier[sockets[name]] = value
+            thing.update_tag()
+
+
+def leave(thing: bpy.types.Object) -> None:
+    """Lets curves stay where they are."""
+    if (modifier := thing.modifiers.get(MODIFIER)) is not None:
+        thing.modifiers.remove(modifier)
 
 
 def bind(data: bpy.types.Curves, faces: NDArray, head: bpy.types.Object, cage: meshes.Arrays, skin: NDArray) -> str:
@@ -34,8 +45,11 @@ def bind(data: bpy.types.Curves, faces: NDArray, head: bpy.types.Object, cage: m
 
     faces: of the roots, shape (curves,)
     cage:  the rest pose of the head, as of ``meshes.rest_arrays``
-    skin:  its vertices in the rest pose where its modifiers show them, shape (n, 3)
+    skin:  its vertices in the rest pose where its modifiers place them, shape (n, 3)
     """
+    renumbered = f"{head.name}: its modifiers number its vertices anew, so its hair does not follow it; apply them"
+    if len(skin) < len(cage["points"]):
+        return renumbered
     counts = curves.counts_of(data)
     points = np.empty(3 * counts.sum(), np.float32)
     data.attributes["position"].data.foreach_get("vector", points)
@@ -44,9 +58,7 @@ def bind(data: bpy.types.Curves, faces: NDArray, head: bpy.types.Object, cage: m
     corners = skin[triangles]
     longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
     if (np.linalg.norm(corners - cage["points"][triangles], axis=2).max(axis=1) > longest).any():
-        if (stale := data.attributes.get(UNPOSED)) is not None:
-            data.attributes.remove(stale)
-        return f"{head.name}: its modifiers number its vertices anew, so its hair does not follow it; apply them"
+        return renumbered
     edges, turned = frames(corners)
     place = np.linalg.solve(edges, (roots - corners[:, 0])[:, :, None])[:, :, 0]
     unposed = np.zeros((len(roots), 4, 4))
@@ -99,6 +111,7 @@ def _group() -> bpy.types.NodeTree:
     for name, way, kind in (
         ("Geometry", "INPUT", "NodeSocketGeometry"),
         ("Skin", "INPUT", "NodeSocketObject"),
+        ("Bound", "INPUT", "NodeSocketBool"),
         ("Geometry", "OUTPUT", "NodeSocketGeometry"),
     ):
         group.interface.new_socket(name, in_out=way, socket_type=kind)
@@ -145,10 +158,15 @@ def _group() -> bpy.types.NodeTree:
     root = vector("ADD", a, vector("ADD", along, scaled(upright, place[2])))
     turned = node("FunctionNodeAxesToRotation", cross, first, primary_axis="Z", secondary_axis="X")
     posed = out(node("FunctionNodeCombineTransform", root, out(turned)))
-    unposed = attribute(UNPOSED, "FLOAT4X4")
-    moved = out(node("FunctionNodeMatrixMultiply", posed, out(unposed)))
+    moved = out(node("FunctionNodeMatrixMultiply", posed, out(attribute(UNPOSED, "FLOAT4X4"))))
     of_curve = out(node("GeometryNodeFieldOnDomain", moved, domain="CURVE", data_type="FLOAT4X4"))
     there = out(node("FunctionNodeTransformPoint", position, of_curve))
-    made = node("GeometryNodeSetPosition", given.outputs["Geometry"], unposed.outputs["Exists"], there)
+    following = out(node("GeometryNodeSetPosition", given.outputs["Geometry"], given.outputs["Bound"], there))
+    first_point = out(node("GeometryNodePointsOfCurve"))
+    start = out(node("GeometryNodeFieldAtIndex", position, first_point, domain="POINT", data_type="FLOAT_VECTOR"))
+    seen = out(node("GeometryNodeProximity", skin, None, start, target_element="FACES"))
+    off = vector("SUBTRACT", seen, start)
+    off_curve = out(node("GeometryNodeFieldOnDomain", off, domain="CURVE", data_type="FLOAT_VECTOR"))
+    made = node("GeometryNodeSetPosition", following, None, None, off_curve)
     group.links.new(out(made), group.nodes.new("NodeGroupOutput").inputs["Geometry"])
     return group
