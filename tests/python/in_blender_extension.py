@@ -491,6 +491,10 @@ def slider(_folder: Path) -> dict:
     head.ringlet.recipe_curl.width__value = 0.01
     wait(settled)
     found["mended"] = of("grooming").state_of(head).message
+    head.ringlet.recipe_color.dye__color = (1.0, 0.5, 0.0)
+    wait(settled)
+    found["dye"] = [list(head.ringlet.recipe_color.dye__color), head.ringlet.recipe.as_string()]
+    found["dyed"] = head.ringlet.hair_curves.data.materials[0].node_tree.nodes["Ringlet hair"].parametrization
     head.modifiers.new("fewer", "DECIMATE").ratio = 0.3
     head.ringlet.recipe_curl.width__value = 0.012
     wait(settled)

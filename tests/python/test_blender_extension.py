@@ -195,6 +195,8 @@ def test_a_groom_from_scratch_follows_a_slider_undo_and_redo(act):
     assert found["redone"] == pytest.approx(found["after"], abs=1e-6) and not found["asked again"]
     assert "curl.width is 50 m; must be at most 0.2 m" in found["refused"]
     assert found["kept"] == pytest.approx(found["after"], abs=1e-6) and found["mended"] == ""
+    assert found["dye"][0] == pytest.approx([1.0, 128 / 255, 0.0]) and '"#ff8000"' in found["dye"][1]
+    assert found["dyed"] == "COLOR"
     assert "Kim: its modifiers number its vertices anew" in found["renumbered"]
 
 

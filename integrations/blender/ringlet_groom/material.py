@@ -77,7 +77,7 @@ def hair_material(
     material.diffuse_color = (*color.tolist(), 1.0)
     nodes = material.node_tree.nodes
     hair = nodes.get(NAME) or _new_hair(material)
-    hair.parametrization = "COLOR" if dyed else "MELANIN"
+    hair.parametrization = "MELANIN"  # Blender 5 has no inputs by name but those of the parametrization
     melanin, redness = cycles_melanin(np.array(fiber["melanin"]), np.array(fiber["redness"]))
     values: dict[str, Any] = {
         "Roughness": fiber["roughness"],
@@ -90,6 +90,8 @@ def hair_material(
     }
     for key, value in values.items():
         hair.inputs[key].default_value = value
+    if dyed:
+        hair.parametrization = "COLOR"
     for attribute, key, wanted in (
         ("melanin", "Melanin", pigments and not dyed),
         ("redness", "Melanin Redness", pigments and not dyed),

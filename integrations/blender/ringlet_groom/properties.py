@@ -150,6 +150,8 @@ def _shown(setting: Setting, value: Any) -> Any:
         return edited_text.ramp_text(value)
     if setting.kind == "vector":
         return tuple(value) if isinstance(value, list | tuple) and len(value) == 3 else (0.0, 0.0, 0.0)
+    if setting.kind == "color":
+        return tuple(part / 255.0 for part in bytes.fromhex(str(value or "#000000")[1:]))
     if not isinstance(value, int | float):
         value = setting.least or 0
     return int(value) if setting.kind == "integer" else float(value) / (scale() if setting.unit == "m" else 1.0)
@@ -167,6 +169,8 @@ def _stored(setting: Setting, value: Any) -> Any:
         return edited_text.parse_ramp(value)
     if setting.kind == "vector":
         return [float(f"{number:.6g}") for number in value]
+    if setting.kind == "color":
+        return f"#{bytes(round(255.0 * part) for part in value).hex()}"
     return value * scale() if setting.unit == "m" else value
 
 
@@ -192,6 +196,8 @@ def _property(kind: str, setting: Setting) -> Any:
         return EnumProperty(items=items, **common)
     if setting.kind == "vector":
         return FloatVectorProperty(**common, size=3, precision=2)
+    if setting.kind == "color":
+        return FloatVectorProperty(**common, size=3, min=0.0, max=1.0, subtype="COLOR_GAMMA")
     if setting.place[-1] in ("map", "density", "direction", "region"):
         return StringProperty(**common, search=_names, search_options={"SUGGESTION"})
     return StringProperty(**common)

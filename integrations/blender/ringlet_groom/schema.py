@@ -25,7 +25,7 @@ class Setting:
     """A setting that a property can hold.
 
     place:   keys below its table
-    kind:    number, integer, boolean, text, choice, vector, ramp, or table: whether an optional table is there
+    kind:    number, integer, boolean, text, choice, vector, color, ramp, or table: whether an optional table is there
     unit:    m, deg, /cm2 or empty
     choices: of a choice; of one that may be absent the first is empty
     of:      place of the value that this one varies, or None
@@ -109,6 +109,8 @@ def _of_entry(schema: dict[str, Any], name: str, entry: dict[str, Any], place: t
     elif vector := next((one for one in options if _is_vector(one)), None):
         bounds = vector["prefixItems"][0]
         yield Setting(where, "vector", least=bounds.get("minimum"), most=bounds.get("maximum"), **common)
+    elif any(one.get("format") == "color" for one in options):
+        yield Setting(where, "color", **common)
     elif any(one.get("type") == "string" and one.get("format") != "path" for one in options):
         yield Setting(where, "text", **common)
 
