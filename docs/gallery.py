@@ -62,6 +62,7 @@ PAGE_FOOT = """
 - Box braids: two braids hang off the cheek.
 - Locs: at part lines, hair gathers in tufts; ridges along a loc are too even.
 - Locs with new growth: hair leaves part lines in teeth, and baby hair is hardly seen.
+- Finger waves: the last row breaks over the top of the ears, and the part runs on thinly from the crown to the nape.
 - Wolf cut: clumps look matted, and the fringe is torn.
 - Long box braids: some that start beside the face hang off the chest.
 - On the adult, a flesh tab of the collar bone comes through the shirt; the torso has none.

@@ -124,10 +124,12 @@ GROOMS: dict[str, tuple[Recipe, View]] = {  # what an operator needs
     "loc": (one_strand() | {"hairs": {"per_lock": 40, "points": 80}}, CLOSE_VIEW),
     "tie": (DOME | {"locks": DOME["locks"] | {"count": 100}}, DOME_VIEW),
     "edges": (SHORT, BORDER_VIEW),
+    "finger_wave": (DOME | {"curves": {"line": {"points": [[-0.2, 0.09, 0], [0.2, 0.09, 0]]}}}, DOME_VIEW),
 }
 GIVEN: dict[str, Recipe] = {  # what an operator is shown with
     "tie": {"toward": [0, 1, 0.4]},
     "edges": {"within": 0.012},
+    "finger_wave": {"curve": "line"},
     "braid": {"tail": 0.008},
     "twist": {"tail": 0.008},
 }

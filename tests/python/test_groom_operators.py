@@ -31,6 +31,7 @@ OPERATORS = {
     "cut": "at = -6\nspread = 0.5",
     "edges": "within = 15",
     "grow_to": "mesh = 'round'\nspread = 0.5",
+    "finger_wave": "curve = 'tail'\nwavelength = 9",
 }
 KEEPING_LENGTH = ["lift", "volume", "bend", "part", "flyaways", "straighten"]
 TAIL = "[curves.tail]\npoints = [[0, 8, -8], [0, 6, -11], [0, -4, -12]]\n"
@@ -77,9 +78,9 @@ def grid(curves):
     return curves.points.reshape(len(curves), -1, 3)
 
 
-def on_sheet(operator, lines, ids=None):
+def on_sheet(operator, lines, ids=None, top=""):
     """An operator applied to polylines on a flat scalp (y = 0)."""
-    recipe = parse_recipe(f"ringlet = 2\n{TAIL}[[shape]]\n{operator}")
+    recipe = parse_recipe(f"ringlet = 2\n{top}{TAIL}[[shape]]\n{operator}")
     surface = Scalp(sheet(), None)
     curves = surface.bind(Curves.from_list([np.asarray(line, float) for line in lines], ids), 1e-3, "test")
     helpers = {name: helper.inline_curve() for name, helper in recipe.curves.items()}

@@ -9,7 +9,7 @@ from ringlet.data.groom import SECTION, STRAND_RADIUS
 from ringlet.data.pigment import curve_reflectance
 from ringlet.groom.check import KINDS, Allowed, Bodies, find, lock_of
 from ringlet.groom.hairline import border_points
-from ringlet.groom.operators.operator import arc_lengths, grid
+from ringlet.groom.operators.operator import arc_lengths, evenly, grid
 from ringlet.groom.operators.tied import TO_TIE
 from ringlet.groom.scalp import Scalp
 from ringlet.groom.sections import STRAND
@@ -117,6 +117,22 @@ def test_the_ombre_is_dark_at_its_roots_and_light_at_its_tips():
     colors = curve_reflectance(made, "hairs").reshape(len(made), -1, 3)
     assert np.median(colors[:, 0], axis=0).max() < 0.02
     assert np.median(colors[:, -1], axis=0)[0] > 0.3
+
+
+def test_ridges_of_the_finger_waves_run_along_the_part_on_both_sides_of_the_head():
+    recipe = LOOKS[0].with_name("finger_waves.recipe.toml")
+    groom, settings = built(recipe), read_recipe(recipe)
+    (wave,) = (operator for operator in settings.shape if operator.op == "finger_wave")
+    points = grid(groom.locks)
+    above = Scalp(groom.scalp, groom.region).solid.above(np.ascontiguousarray(points.reshape(-1, 3)))[0]
+    part = evenly(settings.curves["parting"].inline_curve()[0], 500)
+    distance = KDTree(part).query(points)[0]
+    swing = np.abs(np.sin(2.0 * np.pi * (distance - wave.start) / wave.wavelength))
+    laid = (arc_lengths(points) > 0.02) & (distance > 0.03) & (distance < 0.1)
+    for side in (points[..., 0] > 0.05, points[..., 0] < 0.0):
+        high, low = (np.median(above.reshape(swing.shape)[laid & side & rows]) for rows in (swing > 0.9, swing < 0.5))
+        assert high - low > 0.5 * wave.height.value
+    assert not groom.conflicts
 
 
 @pytest.mark.parametrize("kind", PRESETS)

@@ -14,6 +14,7 @@ from ringlet.groom.operators.curl import Curl
 from ringlet.groom.operators.cut import Cut
 from ringlet.groom.operators.drawn import Drawn
 from ringlet.groom.operators.edges import Edges
+from ringlet.groom.operators.finger_wave import FingerWave
 from ringlet.groom.operators.flyaways import Flyaways
 from ringlet.groom.operators.frizz import Frizz
 from ringlet.groom.operators.grow_to import GrowTo
@@ -58,7 +59,8 @@ ShapeOperator = Annotated[
     | Cornrow
     | Loc
     | Knot
-    | Edges,
+    | Edges
+    | FingerWave,
     Field(discriminator="op"),
 ]
 
@@ -74,6 +76,7 @@ __all__ = [
     "Cut",
     "Drawn",
     "Edges",
+    "FingerWave",
     "Flyaways",
     "Frizz",
     "GrowTo",
