@@ -57,8 +57,7 @@ mesh = "/adult/skin"
 PAGE_FOOT = """
 ## What a groomer would still refuse
 
-- Wash-and-go: coils are of one size near the part, and their highlights read as beads.
-- Most pictures are from before the denoiser kept single hairs.
+- Wash-and-go: coils are of one size near the part.
 - Box braids: two braids hang off the cheek.
 - Locs: at part lines, hair gathers in tufts; ridges along a loc are too even.
 - Locs with new growth: hair leaves part lines in teeth, and baby hair is hardly seen.
