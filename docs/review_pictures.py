@@ -216,8 +216,8 @@ def tablet(browser: Browser) -> Image.Image:
         return page.taken()
 
 
-# Looks and views [degrees] of live pictures beside renders, their size [pixels] and samples of the renders.
-BESIDE, VIEWS, SQUARE, SAMPLES = ("types/3B", "types/4C", "looks/box_braids"), ((0, 5), (140, 10), (90, 5)), 320, 32
+# Looks and views [degrees] of the comparison with path-traced pictures, their size [pixels] and samples.
+COMPARED, VIEWS, SQUARE, SAMPLES = ("types/3B", "types/4C", "looks/box_braids"), ((0, 5), (140, 10), (90, 5)), 320, 32
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 
@@ -226,7 +226,7 @@ def decoded(url: str) -> NDArray[np.float64]:
 
 
 def pair(page: Page, look: str, azimuth: float, elevation: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Render in place and live picture from a side. Prints the mean luminance of the hair, live by render."""
+    """Path-traced and live picture from a side. Prints the ratio of their mean luminance of the hair."""
     page.get(f"ringlet.viewer.frame({azimuth}, {elevation}, {{ x: 0, y: 0, width: {SQUARE}, height: {SQUARE} }})")
     page.page.get_by_label("Samples per pixel").evaluate(
         f"(list) => {{ list.append(new Option('', '{SAMPLES}')); list.value = '{SAMPLES}'; }}"
@@ -245,10 +245,10 @@ def pair(page: Page, look: str, azimuth: float, elevation: float) -> tuple[NDArr
     return render, live
 
 
-def beside(browser: Browser) -> Image.Image:
-    """Renders in place, and the live picture right of each: looks in rows, at their own density, from three sides."""
+def comparison(browser: Browser) -> Image.Image:
+    """Pairs of a path-traced and a live picture: looks in rows, at their own density, from three sides."""
     rows = []
-    for look in BESIDE:
+    for look in COMPARED:
         with tempfile.TemporaryDirectory() as folder:
             for part in ("types", "looks", "child"):
                 shutil.copytree(EXAMPLE.parent / part, Path(folder, part))
@@ -365,7 +365,7 @@ def moving(browser: Browser) -> Movie:
 
 
 PICTURES: dict[str, Callable[[Browser], Image.Image | Movie]] = {
-    made.__name__: made for made in (start, review, lock, sculpt, shot, live, tablet, beside, people, moving)
+    made.__name__: made for made in (start, review, lock, sculpt, shot, live, tablet, comparison, people, moving)
 }
 
 SIZES = (DESKTOP, WIDE, TABLET, LYING, PHONE)

@@ -52,7 +52,7 @@ class Run:
     files:  what moves, the head, then colliders and cloth, by the name of the file; each with its name in there
     points: of those in each frame so far, by the number of the object
     before: the frame of the scene and the part of it, to return to
-    canceled: whether Ringlet was told to end it, which it does after the step in progress
+    canceled: whether cancellation is requested; it takes effect after the current step
     """
 
     head: str

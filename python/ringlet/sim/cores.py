@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ringlet import _core
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.groom import CORE, SECTION, STRAND_RADIUS, WORN_MASS, WORN_RADIUS, Groom
+from ringlet.data.smooth_step import smooth_step
 from ringlet.sim.inextensible import along_paths
 from ringlet.sim.roots import Roots
 
@@ -150,9 +151,9 @@ class Cores:
             away = np.linalg.norm(offset[0])
             if away > 0.0:
                 run = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(locks[int(row)], axis=0), axis=1))])
-                near = np.clip(1.0 - run / (ROOT_REACH * away), 0.0, 1.0)
+                near = smooth_step(1.0 - run / (ROOT_REACH * away))
                 there = np.clip(offset @ offset[0] / away**2, 0.0, 1.0)
-                shares[points] = np.minimum.accumulate(there) * near * near * (3.0 - 2.0 * near)
+                shares[points] = np.minimum.accumulate(there) * near
         return shares
 
     @cached_property

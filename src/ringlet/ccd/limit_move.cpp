@@ -46,7 +46,7 @@ private:
     void find_first_events(const std::vector<int> &objects);
     bool is_first_of_both(const Event &event) const;
     bool is_superseded(const Event &event) const;
-    bool limits(int object, double fraction) const;
+    bool shortens(double fraction, int object) const;
     void limit_object(int object, double fraction);
     void find_events(int object);
     void add_event(const Impact &impact, int object);
@@ -178,14 +178,14 @@ void MoveLimiter::limit_whole(const std::vector<Impact> &impacts) {
             int object;
             double fraction;
         };
-        const std::vector<Limit> found = collect<Limit>(int(objects.size()), [&](int k, std::vector<Limit> &all) {
+        const std::vector<Limit> limits = collect<Limit>(int(objects.size()), [&](int k, std::vector<Limit> &all) {
             for (const Event &event : events_[objects[k]])
                 if (is_first_of_both(event))
                     for (const int object : {event.a, event.b})
-                        if (limits(object, event.fraction)) all.push_back({object, event.fraction});
+                        if (shortens(event.fraction, object)) all.push_back({object, event.fraction});
         });
-        parallel_for(int(found.size()), few_objects, [&](int k) { limit_object(found[k].object, found[k].fraction); });
-        parallel_chunks(int(found.size()), 1, [&](int k) { find_events(found[k].object); });
+        parallel_for(int(limits.size()), few_objects, [&](int k) { limit_object(limits[k].object, limits[k].fraction); });
+        parallel_chunks(int(limits.size()), 1, [&](int k) { find_events(limits[k].object); });
     }
 }
 
@@ -198,10 +198,10 @@ void MoveLimiter::find_first_events(const std::vector<int> &objects) {
                     if (object >= 0) work(first_[object], event);
         });
     };
-    for_ends([](std::atomic<const Event *> &first, const Event &) { first.store(nullptr, std::memory_order_relaxed); });
+    for_ends([](std::atomic<const Event *> &first, const Event &) { first = nullptr; });
     for_ends([](std::atomic<const Event *> &first, const Event &event) {
-        const Event *found = first.load(std::memory_order_acquire);
-        while ((!found || event < *found) && !first.compare_exchange_weak(found, &event, std::memory_order_acq_rel)) {
+        const Event *known = first;
+        while ((!known || event < *known) && !first.compare_exchange_weak(known, &event)) {
         }
     });
 }
@@ -214,8 +214,8 @@ bool MoveLimiter::is_superseded(const Event &event) const {
     return (event.a >= 0 && fraction_[event.a] != event.fraction_a) || (event.b >= 0 && fraction_[event.b] != event.fraction_b);
 }
 
-// Whether an event at `fraction` shortens the motion of an object.
-bool MoveLimiter::limits(int object, double fraction) const {
+// Whether an event at a fraction limits an object further.
+bool MoveLimiter::shortens(double fraction, int object) const {
     return object >= 0 && !stays_[object] && fraction < fraction_[object];
 }
 
@@ -277,7 +277,7 @@ void MoveLimiter::add_event(const Impact &impact, int object) {
         fraction =
             differ ? std::max(least, ccd::before_impact * impact.toi * most) : impact.toi * (a >= 0 ? fraction_a : fraction_b);
     }
-    if (limits(a, fraction) || limits(b, fraction)) events_[object].push_back({fraction, a, b, fraction_a, fraction_b});
+    if (shortens(fraction, a) || shortens(fraction, b)) events_[object].push_back({fraction, a, b, fraction_a, fraction_b});
 }
 
 void MoveLimiter::scale_motion(int v, double factor) {

@@ -46,7 +46,7 @@ float depthWithin(float depth, vec3 place, vec3 towards) {
 // over a voxel. sine: of the angle between light and lock
 float depthAround(int k, vec3 place, vec3 towards, vec3 V, float shadow, float sine) {
   float free = 1.5707963 * shadow / max(length(towards - V), 0.1);
-  float own = 0.5 * 0.46 * 0.7853982 * shadow / (voxelSize * sine);
+  float own = 0.5 * 0.46 * 0.7853982 * shadow / (voxelSize() * sine);
   return max(opticalDepth(place + free * towards)[k] - own, 0.0);
 }
 

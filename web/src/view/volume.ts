@@ -11,7 +11,6 @@ import { Scattering } from "./scattering";
 export class LightVolume {
   readonly uniforms = {
     gridOrigin: { value: new Vector3() },
-    voxelSize: { value: 1 },
     gridSize: { value: new Vector3(1, 1, 1) },
     gridDepth: { value: texture([1, 1, 1]) },
     gridPassed: { value: open() },
@@ -49,7 +48,6 @@ export class LightVolume {
     }
     const { gridOrigin, gridSize, gridDepth, gridPassed, gridField, gridFlux } = this.uniforms;
     [gridDepth, gridPassed, gridField, gridFlux].forEach((one, k) => fillTexture(one, k < 2 ? fine : scattering.counts, packed[k]));
-    this.uniforms.voxelSize.value = matter.grid.size;
     gridOrigin.value.copy(matter.grid.origin);
     gridSize.value.set(...fine).multiplyScalar(matter.grid.size);
   }
@@ -109,7 +107,7 @@ function fillTexture(uniform: { value: Data3DTexture }, counts: [number, number,
 export const VOLUME = /* glsl */ `
 uniform highp sampler3D gridDepth, gridPassed, gridField, gridFlux;
 uniform vec3 gridOrigin, gridSize; // first corner, extent [m]
-uniform float voxelSize;           // [m]
+float voxelSize() { return gridSize.x / float(textureSize(gridDepth, 0).x); } // [m]
 vec3 inGrid(vec3 place) { return (place - gridOrigin) / gridSize; }
 vec4 opticalDepth(vec3 place) { return texture(gridDepth, inGrid(place)); }
 vec4 pastBodies(vec3 place) { return texture(gridPassed, inGrid(place)); }

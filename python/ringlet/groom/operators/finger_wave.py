@@ -14,6 +14,7 @@ from ringlet import _core
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.quantities import Quantity, Varied, refuse
+from ringlet.data.smooth_step import smooth_step
 from ringlet.groom.helpers import Names
 from ringlet.groom.operators.operator import (
     Context,
@@ -110,8 +111,7 @@ class FingerWave(Shape):
 
     def _eased(self, beyond: NDArray) -> NDArray[np.float64]:
         """From 0 to 1 over the first part of a wave beyond where it begins [m]."""
-        t = np.clip(beyond / (EASE * self.wavelength), 0.0, 1.0)
-        return np.asarray(t * t * (3.0 - 2.0 * t))
+        return smooth_step(beyond / (EASE * self.wavelength))
 
     def _from_line(self, context: Context) -> Field3:
         """Distances of places (n, 3) from the line [m], shape (n,), and unit directions away from it, shape (n, 3)."""

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet.data.curves import Curves
+from ringlet.data.smooth_step import smooth_step
 from ringlet.groom.sculpt import lengthened
 
 Array = NDArray[np.floating]
@@ -21,7 +22,7 @@ CUT_SAMPLES = 8  # samples per edge of a guide at which a cut is tested
 
 # Weight by the distance from the radius inwards, 0 at the radius and 1 at the centre.
 PROFILES: dict[str, Callable[[Array], Array]] = {
-    "smooth": lambda t: t * t * (3.0 - 2.0 * t),
+    "smooth": smooth_step,
     "sharp": lambda t: t**4,
     "flat": lambda t: (t > 0.0).astype(np.float64),
 }

@@ -7,9 +7,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from ringlet.data.rigid import rotation_matrix, rotation_vector
+from ringlet.data.smooth_step import smooth_step
 
 Array = NDArray[np.float64]
 
@@ -183,9 +184,3 @@ class Head:
     @property
     def _all(self) -> list[_Playing]:
         return [one for playing in self._playing.values() for one in playing]
-
-
-def smooth_step(x: ArrayLike) -> Array:
-    """From 0 to 1, with no slope at the ends."""
-    x = np.clip(x, 0.0, 1.0)
-    return x * x * (3.0 - 2.0 * x)

@@ -16,11 +16,11 @@ from ringlet.data.files import replacing
 from ringlet.data.mesh import Mesh
 from ringlet.data.rigid import rotation_matrix, rotation_vector
 from ringlet.data.settings import FORMAT
+from ringlet.data.smooth_step import smooth_step
 from ringlet.data.surfaces import material_of
 from ringlet.data.toml import toml_key
 from ringlet.viewer.files.document import set_value
 from ringlet.viewer.files.open_files import Files
-from ringlet.viewer.play.head import smooth_step
 from ringlet.viewer.show.live_take import LEAD, LiveTake
 
 Array = NDArray[np.float64]
