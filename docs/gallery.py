@@ -64,7 +64,6 @@ PAGE_FOOT = """
 - Finger waves: the last row breaks over the top of the ears, and the part runs on thinly from the crown to the nape.
 - Wolf cut: clumps look matted, and the fringe is torn.
 - Long box braids: some with their roots at the temples hang off the chest.
-- On the adult, a flesh tab of the collar bone comes through the shirt; the torso has none.
 - Cornrows: at the temple, the first hairs of a row begin on a straight line across it, not on the hairline.
 - Flat twists: the rows over the ears are wide.
 - Cornrows and flat twists: tails of neighbouring rows overlap at the nape.

@@ -62,6 +62,13 @@ def skin_to_neckline(points: Array) -> Array:
     return with_features(union(head(p), intersect(chest(p), neckline(p) - 0.5, 0.4), 1.6), p, FEATURES)
 
 
+def dressed(points: Array) -> Array:
+    """The skin in its shirt, which presses the collar bones down beyond its neckline."""
+    p = mirrored(points)
+    seen = union(torso(p) - 0.15, neckline(p) - 0.25, 0.3)
+    return with_features(union(head(p), intersect(chest(p), seen, 0.1), 1.6), p, FEATURES)
+
+
 def chest(p: Array) -> Array:
     """Neck and chest."""
     return intersect(body(p), sphere(p, (0, -15.5, -3.0), 11.0), 0.6)
@@ -154,6 +161,7 @@ def on_beard(p: Array) -> NDArray[np.bool_]:
 HEAD = Head(
     name="adult",
     skin=skin,
+    dressed=dressed,
     shirt=shirt,
     neckline=neckline,
     lips=MOUTH.lips,
@@ -190,6 +198,7 @@ TORSO = replace(  # the same head over a back
     HEAD,
     name="torso",
     skin=skin_to_neckline,
+    dressed=skin_to_neckline,
     shirt=partial(shirt, below=TRUNK),
     shirt_box=((-22.0, -42.4 + BUST - TRUNK, -14.2), (22.0, -8.0, 8.2)),
 )

@@ -20,6 +20,7 @@ class Head:
 
     name:           of the root prim.
     skin, shirt:    signed distances of the two closed bodies.
+    dressed:        that of the skin where the shirt presses on it.
     neckline:       signed distance of the opening of the shirt.
     lips:           signed distance of the lips.
     skin_box, shirt_box: what the bodies lie in: the lowest and the highest corner.
@@ -38,6 +39,7 @@ class Head:
 
     name: str
     skin: Shape
+    dressed: Shape
     shirt: Shape
     neckline: Shape
     lips: Shape

@@ -11,7 +11,7 @@ import numpy as np
 import parts
 from anatomy import Head, mirrored
 from charts import unwrap
-from distances import Array, sphere
+from distances import Array, project, sphere
 from motion import FPS, eye_matrix, head_matrix, pose
 from numpy.typing import NDArray
 from pxr import Gf, Kind, Sdf, Usd, UsdGeom, UsdShade, Vt
@@ -57,6 +57,17 @@ def skin_size(head: Head, points: Array) -> Array:
     return np.min([*sizes, np.full(len(p), 0.64)], axis=0)
 
 
+def pressed(head: Head, points: Array) -> Array:
+    """Points of the skin with those under the shirt pressed down by it; all others stay, and so does where hair grows.
+
+    The mesh is made before: a mesh of another shape has other triangles everywhere, and hair grows elsewhere.
+    """
+    under = np.flatnonzero(head.dressed(points) > head.skin(points) + 0.01)
+    points = points.copy()
+    points[under] = project(head.dressed, points[under])
+    return points
+
+
 def skin_color(head: Head, points: Array) -> Array:
     """Colours of points, shape (n, 3): pink lips, warm cheeks, nose and ears."""
     p = mirrored(points)
@@ -86,11 +97,11 @@ def build(head: Head) -> dict[str, Piece]:
     points, triangles = mesh_shape(head.skin, low, high, head.cell, lambda p: skin_size(head, p))
     labels = label(head, points, triangles)
     regions = {name: np.flatnonzero(labels == k).astype(np.int32) for k, name in enumerate(NAMES)}
-    uv = unwrap(points, triangles, labels, head.skull)
+    uv, color = unwrap(points, triangles, labels, head.skull), skin_color(head, points)
     low, high = np.asarray(head.shirt_box)
     shirt = mesh_shape(head.shirt, low, high, head.cell, lambda p: shirt_size(head, p))
     pieces = {
-        "skin": Piece(points, triangles, skin_color(head, points), 0.5, uv, regions, patches(head, points, triangles)),
+        "skin": Piece(pressed(head, points), triangles, color, 0.5, uv, regions, patches(head, points, triangles)),
         "shirt": Piece(*shirt, head.colors["shirt"], 0.9),
     }
     iris = parts.iris(head)

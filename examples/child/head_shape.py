@@ -107,6 +107,7 @@ _HAIRLINE = PchipInterpolator(  # forehead, corner, temple, sideburn, over the e
 HEAD = Head(
     name="child",
     skin=skin,
+    dressed=skin,
     shirt=shirt,
     neckline=neckline,
     lips=MOUTH.lips,

@@ -8,6 +8,8 @@ from pxr import Usd, UsdValidation
 from ringlet.groom.scalp import Scalp
 from ringlet.io import problems, read_mesh
 
+from ringlet import _core
+
 EXAMPLES = Path(__file__).parents[2] / "examples"
 HEAD = EXAMPLES / "adult" / "head.usdc"
 
@@ -28,6 +30,13 @@ def test_the_skin_is_closed_and_faces_outward(skin):
     assert len(there) == len(halves) and np.array_equal(there, back)
     a, b, c = (skin.points[skin.triangles[:, k]] for k in range(3))
     assert np.einsum("ij,ij->", a, np.cross(b, c)) > 0.0
+
+
+def test_no_skin_comes_through_the_shirt_beyond_its_neckline(skin):
+    shirt = read_mesh(HEAD, "/adult/shirt")
+    solid = _core.Solid(np.ascontiguousarray(shirt.points, np.float64), shirt.triangles)
+    beyond = skin.points[(np.abs(skin.points[:, 0]) > 0.076) & (skin.points[:, 1] < 0.21)]
+    assert len(beyond) > 200 and solid.above(np.ascontiguousarray(beyond, np.float64))[0].max() < -0.001
 
 
 def test_brows_lids_and_beard_are_where_they_grow(skin):
