@@ -2,6 +2,7 @@
 
 import type { Client } from "./client";
 import { h } from "./dom";
+import { keepFocus } from "./focus";
 import { Link, type LinkState } from "./link";
 import { Model } from "./model";
 import { Bar } from "./panel/bar";
@@ -107,6 +108,7 @@ export class App {
     dock.element.append(this.status.element);
     dock.opened = () => sheets.open("settings");
     dock.uncover = () => sheets.open("");
+    settings.search.left = () => viewer.canvas.focus();
     sheets.settings = settings.search.wanted = () => dock.open(settings.tab);
 
     // What is over the picture goes with it
@@ -128,6 +130,7 @@ export class App {
     const back = () => dock.open(settings.tab);
     root.prepend(skips([["stages", left, back], ["settings", settings.element, back], ["view", viewbar.element]]));
     root.append(bar, left, dock.element, lower, compare.element, lens.element, this.notices.element, this.problems.element, sheets.element);
+    keepFocus(document.body, viewer.canvas);
     const below = [viewbar.element, this.timeline.element, sheets.element];
     const panels = [...left.children, dock.element] as HTMLElement[];
     this.clearArea = new ClearArea([bar, this.problems.element], [compare.bar], panels, below, (clear) => {

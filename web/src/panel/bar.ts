@@ -2,6 +2,7 @@
 
 import "./bar.css";
 import { h, iconButton } from "../dom";
+import { endTyping } from "../focus";
 import type { Model } from "../model";
 import { choices, compareWith } from "./compare";
 import { openFile, saveAs, showChanges } from "./files";
@@ -53,7 +54,7 @@ export class Bar {
   }
 
   saveAll(): void {
-    (document.activeElement as HTMLElement | null)?.blur(); // what is typed counts
+    endTyping();
     for (const file of ["recipe", "shot"] as const)
       if (this.model.documents[file]?.dirty) this.model.say({ kind: "save", file });
   }

@@ -42,6 +42,8 @@ export class SettingSearch {
 
   /** Shows the panel that it is in. */
   wanted = (): void => {};
+  /** Takes the focus when the search is given up. */
+  left = (): void => {};
 
   /** reveal: shows a setting of the stage that was chosen; searched: called when a search begins or ends */
   constructor(
@@ -114,7 +116,7 @@ export class SettingSearch {
       return;
     } else if (event.key === "Escape") {
       this.end();
-      this.input.blur();
+      this.left();
     } else return;
     event.preventDefault();
     this.mark();

@@ -81,7 +81,7 @@ export class Snapshots {
     const note = h("textarea", { rows: 1, maxlength: 4000, placeholder: "Note", "aria-label": `Note of ‘${title}’` });
     note.value = one.note;
     note.addEventListener("change", () => model.say({ kind: "edit_snapshot", id: one.id, note: note.value }));
-    note.addEventListener("keydown", (event) => event.key === "Escape" && note.blur());
+    note.addEventListener("keydown", (event) => event.key === "Escape" && compare.focus());
     note.addEventListener("blur", () => setTimeout(() => this.update()));
     const buttons = h(
       "span",

@@ -29,7 +29,6 @@ export class Stack {
     const document = this.model.documents.recipe;
     const shot = this.model.documents.shot;
     this.element.toggleAttribute("hidden", !document && !shot);
-    const focused = (globalThis.document.activeElement as HTMLElement | null)?.dataset["stage"];
     const parts: HTMLElement[] = [];
     if (document) {
       if (document.grooms.length) parts.push(this.grooms(document.grooms, document.groom));
@@ -46,7 +45,6 @@ export class Stack {
           parts.push(this.shotRow(entryName(entry) || kind, [kind, k]));
     }
     this.element.replaceChildren(...parts);
-    if (focused) this.element.querySelector<HTMLElement>(`[data-stage="${focused}"]`)?.focus();
     this.element.classList.toggle("follows", !this.model.role.leads);
   }
 
