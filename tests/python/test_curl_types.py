@@ -41,6 +41,16 @@ def test_curvatures_lie_within_those_of_people():
             assert people[name][0] <= middle <= people[name][-1], (name, kind)
 
 
+@pytest.mark.parametrize("kind", ["2A", "2B", "2C"])
+def test_hairs_of_wavy_recipes_are_as_curved_as_those_of_people(kind):
+    now = curl_types.statistics(
+        curl_types.hanging(curl_types.read_recipe(curl_types.TYPES / f"{kind}.recipe.toml"), 12)
+    )
+    low, *_, high = PUBLISHED["curvature"]["people"]["wavy"]
+    assert low <= now["curvature"][1] <= high
+    assert now["curvature"] == pytest.approx(RECORDED[kind]["recipe"]["curvature"], rel=0.02, abs=2e-3)
+
+
 def test_the_measures_are_those_of_a_helix():
     radius, pitch = 5e-3, 6e-3
     turn = np.linspace(0.0, 20.0 * np.pi, 4000)

@@ -43,3 +43,15 @@ def test_hairs_part_along_the_line_and_not_in_steps_of_their_locks(part):
         for z in np.arange(-0.04, 0.04, 0.002)
     ]
     assert np.mean(steps) < 5e-4 and max(steps) < 0.0015
+
+
+def test_hairs_are_as_dense_beside_a_part_line_as_elsewhere():
+    recipe = (
+        "ringlet = 2\n[scalp]\nregion = 'scalp'\n[guides]\ncount = 40\nlength = 6\nlift = 0.2\nwhorl = false\n"
+        "flow = [0, -1, 0]\npart_line = { offset = 1, falloff = 3 }\n[locks]\ncount = 600\n[hairs]\ndensity = 400\n"
+    )
+    roots = make_hairs(make_groom(parse_recipe(recipe), ball())).curves.roots
+    top = roots[np.abs(roots[:, 2]) < 0.04]
+    bands = np.arange(-0.016, 0.0161, 0.002)  # across the line
+    counts = np.histogram(top[:, 0] - 0.01, bands)[0]
+    assert np.abs(counts / counts.mean() - 1.0).max() < 0.12

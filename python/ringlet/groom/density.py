@@ -11,10 +11,12 @@ from ringlet.data.groom import HAIR_SHARE, Groom
 from ringlet.data.mesh import Mesh
 from ringlet.data.random import Random
 from ringlet.groom.hair_settings import IDS_PER_LOCK, hair_settings, hair_values
+from ringlet.groom.part_line import TO_PART, on_side
 from ringlet.groom.several import grooms_of
 from ringlet.groom.shares import share_areas
 
 SAMPLES_PER_LOCK = 60
+NEIGHBOURS = 6  # nearest locks that a place beside a part line may belong to
 LARGEST_SHARE = 1.5  # of a lock, relative to the median: hair stays sparse where locks are
 PER_CM2 = 1e4  # 1/cm² in 1/m²
 
@@ -70,20 +72,29 @@ def groom_areas(groom: Groom) -> NDArray[np.float64]:
     of_sections = share_areas(groom.locks)
     if of_sections.all():
         return of_sections
-    nearest = lock_areas(groom.scalp, hair_region(groom), np.asarray(groom.locks.roots, np.float64))
+    to_part = groom.locks.curve.get(TO_PART, None)
+    nearest = lock_areas(groom.scalp, hair_region(groom), np.asarray(groom.locks.roots, np.float64), to_part)
     return np.where(of_sections > 0.0, of_sections, nearest)
 
 
-def lock_areas(scalp: Mesh, region: NDArray[np.int32], roots: NDArray[np.float64]) -> NDArray[np.float64]:
+def lock_areas(
+    scalp: Mesh, region: NDArray[np.int32], roots: NDArray[np.float64], to_part: NDArray | None = None
+) -> NDArray[np.float64]:
     """Area of the scalp that is nearer to a lock's root than to others [m²], shape (locks,), estimated by samples.
 
     It is at most 1.5 times the median, so that a hairline with few locks stays sparse.
 
     region: triangles that carry hair
     roots:  shape (locks, 3) [m]
+    to_part: ``TO_PART`` of locks that part, shape (locks, 3); places belong to locks on their side of the line
     """
     places, _ = region_samples(scalp, region, SAMPLES_PER_LOCK * len(roots))
-    nearest = np.asarray(KDTree(roots).query(places)[1])
+    count = 1 if to_part is None else min(NEIGHBOURS, len(roots))
+    near = np.asarray(KDTree(roots).query(places, k=count)[1]).reshape(len(places), count)
+    nearest = near[:, 0]
+    if to_part is not None:
+        own = on_side(places[:, None] - roots[near], to_part[near])
+        nearest = near[np.arange(len(near)), own.argmax(axis=1)]
     shares = np.bincount(nearest, minlength=len(roots)) * (region_area(scalp, region) / len(places))
     return np.minimum(shares, LARGEST_SHARE * np.median(shares))
 

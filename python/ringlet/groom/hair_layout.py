@@ -22,8 +22,8 @@ from ringlet.groom.fiber import seen_widths
 from ringlet.groom.hair_curl import Placed
 from ringlet.groom.hair_settings import IDS_PER_LOCK, HairSettings, fiber_settings, hair_values, lock_radii
 from ringlet.groom.operators.woven import JOIN
-from ringlet.groom.part_line import TO_PART, up_to_part
-from ringlet.groom.shares import LAID, REACH, fed, gathered, scattered
+from ringlet.groom.part_line import TO_PART
+from ringlet.groom.shares import LAID, REACH, beside_part, fed, gathered, scattered
 from ringlet.groom.thinning import thinned
 from ringlet.groom.values import Values
 
@@ -60,7 +60,8 @@ def place_hairs(groom: Groom, settings: HairSettings, fraction: float, wider: bo
     spread = np.maximum(own("root_radius"), np.sqrt(areas / np.pi))
     around = spread[lock, None] * np.einsum("hxk,hk->hx", frames[lock][:, :, :2], disk)
     if TO_PART in locks.curve:
-        around = up_to_part(around, locks.curve[TO_PART].astype(np.float64)[lock], spread[lock])
+        beside, offsets = beside_part(roots, frames, locks.curve[TO_PART].astype(np.float64), spread, lock, disk)
+        around[beside] = offsets
     places = roots[lock] + around
     joins = lock_joins(locks)[lock]
     _root_in_rows(groom, settings, first, number, places, joins)

@@ -18,7 +18,6 @@ LENGTHS = (1e-6, 1e6)  # of a vector that gives a direction
 
 # Curve attribute of locks: vector across the part line from the root to it [m], shape (count, 3).
 TO_PART = "to_part"
-NEAR_PART, BEYOND_PART = 3.0, 2.0  # in radii of its disk: locks next to the line; how far beyond it a disk is stretched
 
 Component = Annotated[FiniteFloat, Field(ge=-1000, le=1000)]
 Vector = tuple[Component, Component, Component]
@@ -78,22 +77,10 @@ class PartLine(Section):
         return across, np.sum((places - foot) * across, axis=1), np.linalg.norm(places - foot, axis=1)
 
 
-def up_to_part(offsets: NDArray, to_part: NDArray, spread: NDArray) -> NDArray[np.float64]:
-    """Offsets of hairs from their lock's root (n, 3) [m], with those of locks along a part line carried up to the line.
-
-    Locks part along the line, but their hairs grow in disks around them, which would leave bays along the line, or
-    cross it. A disk near the line is stretched beyond it, and what crosses the line is mirrored at it.
-
-    to_part: ``TO_PART`` of the lock of each, shape (n, 3)
-    spread:  radius of its disk [m], shape (n,)
-    """
-    far = np.maximum(np.linalg.norm(to_part, axis=1), 1e-12)
-    across = to_part / far[:, None]
-    toward = np.sum(offsets * across, axis=1)
-    stretched = (toward > 0.0) & (far < NEAR_PART * spread)
-    carried = toward * np.where(stretched, np.maximum(BEYOND_PART * far / np.maximum(spread, 1e-12), 1.0), 1.0)
-    carried = np.minimum(carried, 2.0 * far - carried)
-    return np.asarray(offsets + (carried - toward)[:, None] * across)
+def on_side(offsets: NDArray, to_part: NDArray) -> NDArray[np.bool_]:
+    """Whether places are on their lock's side of the part line, for offsets from its root and its ``TO_PART`` (..., 3)
+    [m]."""
+    return np.asarray(np.sum(offsets * to_part, axis=-1) < np.sum(to_part * to_part, axis=-1))
 
 
 def _nearest(places: NDArray, lines: Curves) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -6,10 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import KDTree
 
 from ringlet import _core
 from ringlet.data.curves import Curves
 from ringlet.data.groom import SECTION
+from ringlet.groom.part_line import on_side
 from ringlet.groom.scalp import Scalp, tangents
 from ringlet.groom.sections import AREA, EDGE, Division
 
@@ -18,6 +20,8 @@ FIRST_JOIN, LAST_JOIN = 0.4, 1.5  # factor on where hair at the strand, and at t
 LATEST = 0.97  # of joins, as a part of a row
 HALVINGS = 9  # of a reach
 FARTHEST = 1.5  # reach, in sizes of a section
+NEAR_PART = 3.0  # distance of a lock from its part line up to which it fills its cell, in radii of its share
+NEIGHBOURS, WIDEST = 24, 2.0  # of a cell: locks that may bound it; how far it reaches at most, in those radii
 BEYOND = 3e-4, 0.1  # how far a place is from the nearest of the scalp, across the normal: [m], and per reach
 
 # Curve attribute of locks: how far their share reaches from the root in directions around the normal [m], shape (count,
@@ -192,6 +196,39 @@ def scattered(reach: NDArray[np.float32], roots: NDArray, normals: NDArray, disk
 
     reach, roots, normals: of the lock of each place, shape (n, DIRECTIONS), (n, 3) and (n, 3)
     """
+    x = tangents(normals)
+    return roots + _carried(reach, disk, x, np.cross(normals, x))
+
+
+def beside_part(
+    roots: NDArray, frames: NDArray, to_part: NDArray, spread: NDArray, lock: NDArray, disk: NDArray
+) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
+    """Hairs of the locks next to a part line (n,), and their offsets from the root of their lock [m], shape (n, 3).
+
+    They fill the cell of the lock, which is what is nearest to its root on its side of the line: disks around the roots
+    leave bays along the line, or cross it.
+
+    roots, frames, to_part, spread: of all locks, with ``TO_PART`` and the radius of what they cover [m]
+    lock, disk:                     of all hairs: their lock, and their place in the unit disk
+    """
+    near = np.linalg.norm(to_part, axis=1) < NEAR_PART * spread
+    hairs, of = np.flatnonzero(near[lock]), (np.cumsum(near) - 1)[lock[near[lock]]]
+    count = min(NEIGHBOURS, len(roots) - 1)
+    neighbours = np.asarray(KDTree(roots).query(roots[near], k=count + 1)[1]).reshape(-1, count + 1)[:, 1:]
+    apart, own_part = roots[neighbours] - roots[near, None], to_part[near, None]
+    border = np.where(on_side(apart, own_part)[:, :, None], 0.5 * apart, own_part)  # feet of the cell's sides
+    border = np.concatenate([border, own_part], axis=1)
+    x, y = frames[near, :, 0], frames[near, :, 1]
+    angle = 2.0 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS
+    around = np.cos(angle)[:, None] * x[:, None] + np.sin(angle)[:, None] * y[:, None]
+    toward = np.maximum(np.einsum("ndx,nkx->ndk", around, border), 1e-12)
+    reach = np.minimum((np.sum(border * border, axis=2)[:, None] / toward).min(axis=2), WIDEST * spread[near, None])
+    return hairs, _carried(reach[of], disk[hairs], x[of], y[of])
+
+
+def _carried(reach: NDArray, disk: NDArray, x: NDArray, y: NDArray) -> NDArray[np.float64]:
+    """Offsets [m], shape (n, 3), of places of the unit disk, shape (n, 2), that is stretched to reaches (n, DIRECTIONS)
+    in the plane of x and y, shape (n, 3) each; areas keep their proportions."""
     square = reach.astype(np.float64) ** 2
     share = np.cumsum(0.5 * (square + np.roll(square, -1, axis=1)), axis=1)
     share /= np.maximum(share[:, -1:], 1e-18)
@@ -202,9 +239,8 @@ def scattered(reach: NDArray[np.float32], roots: NDArray, normals: NDArray, disk
     t = np.clip((wanted - before) / np.maximum(share[rows, k] - before, 1e-18), 0.0, 1.0)
     far = (1.0 - t) * reach[rows, k] + t * reach[rows, (k + 1) % DIRECTIONS]
     angle = 2.0 * np.pi * (k + t) / DIRECTIONS
-    x, y = tangents(normals), np.cross(normals, tangents(normals))
     direction = np.cos(angle)[:, None] * x + np.sin(angle)[:, None] * y
-    return roots + (np.linalg.norm(disk, axis=1) * far)[:, None] * direction
+    return np.asarray((np.linalg.norm(disk, axis=1) * far)[:, None] * direction)
 
 
 def _directions(normals: NDArray, angle: NDArray) -> NDArray[np.float64]:
