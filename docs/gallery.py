@@ -55,6 +55,22 @@ mesh = "/adult/skin"
 """
 
 PAGE_FOOT = """
+## Faults, before and after
+
+Each row is a fault in two places, with the picture of 28 November to the left and the present one to the right. Both
+are drawn smaller than they are. `python docs/gallery_faults.py` takes the former from the history.
+
+![Six rows of two pairs: soft and single hairs, roots, parts, types, locs, and the demo's still](images/faults.jpg)
+
+| row | fault | what changed |
+|---|---|---|
+| 1 | hair looked painted: 3A, low bun | the denoiser keeps [single hairs](picture_bench.md#detail-of-hair) |
+| 2 | pointed tufts at roots: box braids, Bantu knots | hair closes over its section; wide ones look like tents |
+| 3 | wedge at a part, islands at a temple: wash-and-go, fade | hair grows up to a part, and hairlines fade |
+| 4 | columns of one pitch, felt: 3C, 4B | families of several pitches, Z-shaped hairs, neutral black |
+| 5 | beads along locs, skin through a shirt: locs, flat twists | hair is matted, and the bust dressed |
+| 6 | a still of another time | `make demo` makes the still that is shown |
+
 ## What a groomer would still refuse
 
 - Wash-and-go: coils are of one size near the part.
