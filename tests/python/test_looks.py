@@ -33,6 +33,12 @@ def name(recipe):
     return recipe.name.removesuffix(".recipe.toml")
 
 
+def test_the_fringe_of_the_bob_leaves_no_lock_over_the_face():
+    tips = grid(built(EXAMPLES / "looks" / "bob.recipe.toml").locks)[:, -1]
+    over_face = (np.abs(tips[:, 0]) < 0.042) & (tips[:, 2] > 0.055)
+    assert over_face.sum() > 100 and tips[over_face, 1].min() > 0.375
+
+
 @pytest.mark.parametrize("recipe", WOVEN_LOOKS, ids=name)
 def test_a_look_is_short_builds_and_has_strands_of_equal_number(recipe):
     assert len(recipe.read_text().splitlines()) < 60
