@@ -74,7 +74,9 @@ are drawn smaller than they are. `python docs/gallery_faults.py` takes the forme
 ## What a groomer would still refuse
 
 - Wash-and-go: coils are of one size near the part.
-- Box braids: two braids hang off the cheek.
+- Box braids: two braids hang off the cheek; on the child, one hangs over an eye.
+- Two-strand twists: on the adult, one hangs over an eye.
+- Hair down, two puffs, 3B: on the other head, the part is a wide bare wedge.
 - Locs: at part lines, hair gathers in tufts; ridges along a loc are too even.
 - Locs with new growth: hair leaves part lines in teeth, and baby hair is hardly seen.
 - Finger waves: the last row breaks over the top of the ears, and the part runs on thinly from the crown to the nape.
