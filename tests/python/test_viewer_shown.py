@@ -25,6 +25,22 @@ def test_the_first_hairs_are_spread_over_all_locks(folder: Path):
         assert np.all(hairs["offset"][:16] == 0.0) and np.any(hairs["offset"][16:] != 0.0)
 
 
+def test_a_page_that_comes_later_gets_few_hairs_that_stand_for_all_then_the_locks_then_all(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setattr(display_groom, "GLIMPSE", 8)
+    with serving(folder) as client:
+        with page(client) as one:
+            whole = one.receive("hairs")
+            one.receive("numbers", draft=False)
+        with page(client) as two:
+            few, locks, later = two.receive("hairs"), two.receive("locks"), two.receive("hairs")
+        assert few["count"] == 8 < whole["count"] == later["count"] and len(locks["ids"]) == 8
+        assert sorted(few["lock"]) == list(range(8)) and np.array_equal(few["lock"], whole["lock"][:8])
+        assert few["width"] == pytest.approx(whole["width"][:8] * whole["count"] / 8)
+        assert np.array_equal(few["thinning"], whole["thinning"])
+
+
 def test_the_head_is_shown_before_its_groom_is_made_and_once(folder: Path, monkeypatch: pytest.MonkeyPatch):
     seen, made = threading.Event(), display_groom.make_groom
 

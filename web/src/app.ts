@@ -1,9 +1,8 @@
 // The page: connects what the server says with the picture and the panels.
 
-import type { Client } from "./client";
 import { h } from "./dom";
 import { keepFocus } from "./focus";
-import { Link, type LinkState } from "./link";
+import type { Link, LinkState } from "./link";
 import { Model } from "./model";
 import { Bar } from "./panel/bar";
 import { HandTools } from "./panel/hand_tools";
@@ -18,7 +17,6 @@ import { LiveSides } from "./panel/live_sides";
 import { LockTool } from "./panel/lock";
 import { Look } from "./panel/look";
 import { Notes } from "./panel/notes";
-import { ownName } from "./panel/author";
 import { People } from "./panel/people";
 import { PresenterPointer } from "./panel/pointer";
 import { References } from "./panel/references";
@@ -57,7 +55,7 @@ export class App {
   private readonly unsaved = new Unsaved(this.model);
   private session = "";
 
-  constructor(root: HTMLElement, client: Client) {
+  constructor(root: HTMLElement, link: Link) {
     const { model } = this;
     const picture = h("main", { class: "picture" });
     const people = new People(model, () => this.look, this.notices);
@@ -139,7 +137,7 @@ export class App {
     });
     const preferred = matchMedia("(prefers-color-scheme: light)").matches ? "light" : "dark";
     this.setTheme((localStorage.getItem("ringlet-theme") as "dark" | "light" | null) ?? preferred);
-    this.connect(client);
+    this.connect(link);
   }
 
   /** What is open, without the ends of its file name. */
@@ -147,17 +145,20 @@ export class App {
     return (this.model.welcome?.name ?? "ringlet").split(".")[0];
   }
 
-  private connect(client: Client): void {
+  private connect(link: Link): void {
     const { model } = this;
     model.hear("welcome", (message) => this.welcome(message));
     model.hear("share_page", (message) => this.sharePage(message));
-    const leads = () => model.welcome !== null && model.role.leads;
-    model.link = new Link(client, (message) => model.take(message), (state, why) => this.connected(state, why), leads, ownName);
+    model.link = link;
     addEventListener("beforeunload", (event) => {
       (document.activeElement as HTMLElement | null)?.blur(); // what is typed counts
-      if (document.documentElement.dataset["link"] !== "open" && model.link?.unanswered) event.preventDefault();
+      if (document.documentElement.dataset["link"] !== "open" && link.unanswered) event.preventDefault();
     });
-    model.link.start();
+    link.tell({
+      hear: (message) => model.take(message),
+      changed: (state, why) => this.connected(state, why),
+      leads: () => model.welcome !== null && model.role.leads,
+    });
   }
 
   /** Whether panels and picture have their sizes. */
@@ -171,7 +172,8 @@ export class App {
    */
   get settled(): boolean {
     const { model, viewer, look } = this;
-    return Boolean(model.link?.answered) && model.settled && look.settled && this.laidOut && viewer.current;
+    const whole = viewer.hair.a.all === model.numbers?.hairs; // and no glimpse of few hairs
+    return Boolean(model.link?.answered) && model.settled && whole && look.settled && this.laidOut && viewer.current;
   }
 
   private setTheme(theme?: "dark" | "light"): void {

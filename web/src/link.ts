@@ -22,6 +22,14 @@ const STORE = "ringlet-owed"; // what this tab has not been answered when it is 
 
 export type LinkState = "open" | "lost" | "refused";
 
+/** Who hears what the server says, and how the connection is. */
+export interface Listener {
+  hear: (message: FromServer) => void;
+  changed: (state: LinkState, why: string) => void;
+  /** Whether this page holds the edit lock. */
+  leads: () => boolean;
+}
+
 export class Link {
   private socket: WebSocket | null = null;
   private wait = FIRST_WAIT;
@@ -32,13 +40,12 @@ export class Link {
   private led = false;
   /** What was said before and has to be said again. */
   private again: FromPage[] = [];
+  private listener: Listener | null = null;
+  private state: [LinkState, string] | null = null;
+  private readonly came: ArrayBuffer[] = []; // before there was a listener, oldest first
 
   constructor(
     private readonly client: Client,
-    private readonly hear: (message: FromServer) => void,
-    private readonly changed: (state: LinkState, why: string) => void,
-    /** Whether this page holds the edit lock. */
-    private readonly leads: () => boolean,
     private readonly person: () => string,
   ) {
     const stored = client.copied ? null : sessionStorage.getItem(STORE); // the tab that this one is a copy of sends it
@@ -48,6 +55,34 @@ export class Link {
       [this.heard, this.owed, this.led] = [heard, owed, led];
     }
     addEventListener("pagehide", () => this.store());
+  }
+
+  /** Tells a listener what has come so far, one message a task so that the page is drawn meanwhile, and what comes. */
+  tell(listener: Listener): void {
+    this.listener = listener;
+    if (this.state) listener.changed(...this.state);
+    this.tellNext();
+  }
+
+  private tellNext(): void {
+    const data = this.came.shift();
+    if (!data) return;
+    setTimeout(() => this.tellNext());
+    this.listener!.hear(decode(data));
+  }
+
+  private take(data: ArrayBuffer): void {
+    if (this.listener && !this.came.length) this.listener.hear(decode(data));
+    else this.came.push(data);
+  }
+
+  private turn(...state: [LinkState, string]): void {
+    this.state = state;
+    this.listener?.changed(...state);
+  }
+
+  private leads(): boolean {
+    return this.listener?.leads() ?? false;
   }
 
   /** Keeps what was not answered for when this tab is loaded again. */
@@ -79,16 +114,16 @@ export class Link {
       this.wait = FIRST_WAIT;
       this.send({ kind: "hello", version: VERSION, client: this.client.name, leads: this.led || this.leads(), person: this.person() });
       this.led = false;
-      this.changed("open", "");
+      this.turn("open", "");
     };
-    socket.onmessage = (event) => this.hear(decode(event.data as ArrayBuffer));
+    socket.onmessage = (event) => this.take(event.data as ArrayBuffer);
     socket.onclose = (event) => {
       this.socket = null;
       if (event.code === REFUSED || event.code === WRONG) {
-        this.changed("refused", event.reason);
+        this.turn("refused", event.reason);
         return;
       }
-      this.changed("lost", "The server does not answer. Your edits are kept here until it is back.");
+      this.turn("lost", "The server does not answer. Your edits are kept here until it is back.");
       setTimeout(() => this.start(), this.wait);
       this.wait = Math.min(2 * this.wait, LONGEST_WAIT);
     };

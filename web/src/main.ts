@@ -1,10 +1,13 @@
-// Starts the page.
+// Starts the page: the server is asked before there is anything to show what it says, so that it works meanwhile.
 
 import "./base.css";
 import "./page.css";
 import "./controls.css";
-import { App } from "./app";
 import { identify } from "./client";
+import { Link } from "./link";
+import { ownName } from "./panel/author";
 
-const app = new App(document.getElementById("app")!, await identify());
-Object.assign(window, { ringlet: app });
+const link = new Link(await identify(), ownName);
+link.start();
+const { App } = await import("./app");
+Object.assign(window, { ringlet: new App(document.getElementById("app")!, link) });

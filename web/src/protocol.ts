@@ -1,6 +1,6 @@
 // Made by tools/make_protocol.py from python/ringlet/viewer/protocol; change it there.
 
-export const VERSION = 14;
+export const VERSION = 15;
 export type Json = string | number | boolean | null | Json[] | { [key: string]: Json };
 
 /** A stage of the groom. place: path of its settings in the recipe. */
@@ -670,10 +670,11 @@ export interface Subject {
   high: [number, number, number];
 }
 
-/** A mesh of the scene. made_of: its material: skin, eye, cloth or matte. */
+/** A mesh of the scene, the one of ``index`` among ``of``, which come one after another and are shown together. */
 export interface Body {
   kind: "body";
   index: number;
+  of: number;
   name: string;
   made_of: string;
   color: [number, number, number];

@@ -21,6 +21,21 @@ test("the skin that hair is to grow on is framed until hair is there", async () 
   target().forEach((value, axis) => expect(value).toBeCloseTo(hair[axis]!, 6));
 });
 
+test("all bodies of a scene are seen at once, and those of another scene take their place", async () => {
+  const page = await open();
+  const { bodies } = page.app.viewer.stage;
+  const body = page.first("body");
+  const before = bodies.get(0);
+  page.hear({ ...body, index: 0, of: 2 });
+  expect(bodies.get(0)).toBe(before);
+  page.hear({ ...body, index: 1, of: 2 });
+  expect(bodies.get(0)).not.toBe(before);
+  expect(bodies.size).toBe(2);
+  page.hear({ ...body, index: 0, of: 2 }); // a scene that another one overtakes
+  page.hear({ ...body, index: 0, of: 1 });
+  expect(bodies.size).toBe(1);
+});
+
 test("a graphics card that is lost is one line, with what to do", async () => {
   const page = await open();
   page.app.viewer.canvas.dispatchEvent(new Event("webglcontextlost"));

@@ -3,6 +3,7 @@
 import { expect, test, vi } from "vitest";
 import { decode } from "../src/codec";
 import type { FromServer } from "../src/protocol";
+import { Link } from "../src/link";
 import { enter, number } from "./controls";
 import { open, type Page, recorded, Socket } from "./page";
 
@@ -31,6 +32,24 @@ test("what was not answered is said again after a restart", async () => {
   expect(changes(page)).toEqual([[["curl", "width"], 1.75], [["curl", "pitch"], 2.25]]);
   page.hear({ kind: "heard", count: Socket.latest.heard.length - 1 });
   expect(page.model.link!.answered).toBe(true);
+});
+
+test("what comes before the page is there is heard in order, and before what comes after", async () => {
+  vi.stubGlobal("WebSocket", Socket);
+  vi.useFakeTimers();
+  const link = new Link({ name: "tab", copied: false }, () => "");
+  link.start();
+  Socket.latest.open();
+  expect(Socket.latest.heard).toMatchObject([{ kind: "hello", leads: false }]);
+  const data = recorded("small.recipe");
+  for (const one of data.slice(0, 4)) Socket.latest.onmessage({ data: one });
+  const heard: string[] = [];
+  link.tell({ hear: ({ kind }) => heard.push(kind), changed: (state) => heard.push(state), leads: () => false });
+  Socket.latest.onmessage({ data: data[4] });
+  expect(heard.length).toBe(2); // the rest after the page was drawn
+  vi.advanceTimersByTime(10);
+  Socket.latest.onmessage({ data: data[5] });
+  expect(heard).toEqual(["open", ...data.slice(0, 6).map((one) => decode(one).kind)]);
 });
 
 test("what a server has heard is not said again", async () => {

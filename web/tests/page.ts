@@ -131,9 +131,11 @@ export async function open(example: Example = "small.recipe", change = (message:
   vi.spyOn(HTMLElement.prototype, "clientHeight", "get").mockReturnValue(HEIGHT);
   const root = document.createElement("div");
   document.body.append(root);
-  const { App } = await import("../src/app");
+  const [{ App }, { Link }] = await Promise.all([import("../src/app"), import("../src/link")]);
   vi.useFakeTimers();
-  const app = new App(root, { name: "tab", copied });
+  const link = new Link({ name: "tab", copied }, () => localStorage.getItem("ringlet-person") ?? "");
+  link.start();
+  const app = new App(root, link);
   Socket.latest.open();
   for (const message of recorded(example)) app.model.take(change(decode(message)));
   vi.advanceTimersByTime(SETTLED);

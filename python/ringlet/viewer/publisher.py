@@ -10,6 +10,8 @@ import threading
 from collections.abc import Callable
 from contextlib import suppress
 
+GLIMPSE = "/glimpse"  # ends the subject of a small message before a large one
+
 
 class SendQueue:
     """Send queue of one page: waiting messages, oldest subject first, then requested messages, made on demand.
@@ -67,14 +69,17 @@ class Publisher:
 
     def __init__(self) -> None:
         self._latest: dict[str, bytes] = {}
+        self._glimpses: dict[str, bytes] = {}
         self._queues: list[SendQueue] = []
 
     def subscribe(self, first: bytes) -> SendQueue:
-        """Returns a new send queue with the welcome message and all retained messages."""
+        """Returns a new send queue with the welcome message and all retained messages, those with a glimpse last."""
         queue = SendQueue()
         queue.put("welcome", first)
-        for subject, message in self._latest.items():
-            queue.put(subject, message)
+        for subject, message in {**self._latest, **self._glimpses}.items():
+            queue.put(subject + GLIMPSE if subject in self._glimpses else subject, message)
+        for subject in self._glimpses:
+            queue.put(subject, self._latest[subject])
         self._queues.append(queue)
         return queue
 
@@ -82,10 +87,17 @@ class Publisher:
         """Removes a send queue."""
         self._queues.remove(queue)
 
-    def publish(self, subject: str, message: bytes) -> None:
-        """Retains a message and queues it for every page."""
+    def publish(self, subject: str, message: bytes, glimpse: bytes = b"") -> None:
+        """Retains a message and queues it for every page.
+
+        glimpse: a small message that a new page gets in the place of a large one, which then follows all others
+        """
         self._latest[subject] = message
+        self._glimpses.pop(subject, None)
+        if glimpse:
+            self._glimpses[subject] = glimpse
         for queue in self._queues:
+            queue.discard(subject + GLIMPSE)  # of the message before
             queue.put(subject, message)
 
     def send(self, subject: str, message: bytes) -> None:
@@ -105,5 +117,6 @@ class Publisher:
         """Removes the messages whose subject starts with a prefix."""
         for subject in self.subjects(prefix):
             del self._latest[subject]
+            self._glimpses.pop(subject, None)
         for queue in self._queues:
             queue.discard(prefix)

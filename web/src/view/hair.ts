@@ -159,7 +159,8 @@ export class Hair {
     return this.carry?.count ?? 0;
   }
 
-  private get all(): number {
+  /** Number of hairs, also of those that the card does not hold. */
+  get all(): number {
     return this.carry?.hairs.count ?? 0;
   }
 
@@ -303,7 +304,7 @@ export class Hair {
 
   private recolour(): void {
     const { own, named } = this;
-    const fits = own !== null && own.reflectance.length === 3 * own.stations * this.all;
+    const fits = own !== null && own.reflectance.length >= 3 * own.stations * this.all; // the first of all where few stand for them
     const shown = this.ownShown && own !== null && own.stations > 0 && fits;
     this.shared["stations"].value = shown ? own.stations : 0;
     if (named) (this.shared["tone"].value as Vector3).fromArray(named.slice(0, 3).map((c) => c ** 0.25));

@@ -17,6 +17,7 @@ export class Stage {
   readonly guides = new GuideLines();
   readonly painted = new PaintedMap();
   readonly bodies = new Map<number, Body>();
+  private readonly coming: BodyMessage[] = []; // bodies of a scene of which others are still to come
   /** The bodies as they are seen, and without color, to hide what is behind them. */
   readonly scene = new Scene();
   readonly casters = new Scene();
@@ -33,12 +34,22 @@ export class Stage {
     this.hair = { a: hair(), b: hair(), c: hair(), d: hair() };
   }
 
+  /** Takes a body of a scene, in order. All are shown with the last: an eye is none without its iris. */
   setBody(message: BodyMessage): void {
-    this.bodies.get(message.index)?.dispose();
+    const { coming } = this;
+    if (message.index === 0) coming.length = 0;
+    coming.push(message);
+    if (coming.length === message.of) this.setBodies(coming.splice(0));
+  }
+
+  private setBodies(messages: BodyMessage[]): void {
+    for (const body of this.bodies.values()) body.dispose();
+    this.bodies.clear();
     for (const hair of Object.values(this.hair)) hair.relight();
     const { a, b, c, d } = this.hair;
     const volumes = { a: a.volume, b: b.volume, c: c.volume, d: d.volume };
-    this.bodies.set(message.index, new Body(message, this.lights, volumes, [this.scene, this.casters]));
+    for (const message of messages)
+      this.bodies.set(message.index, new Body(message, this.lights, volumes, [this.scene, this.casters]));
     this.changed();
   }
 

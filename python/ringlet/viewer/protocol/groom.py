@@ -16,10 +16,14 @@ class Subject(Message):
 
 
 class Body(Message):
-    """A mesh of the scene. made_of: its material: skin, eye, cloth or matte."""
+    """A mesh of the scene, the one of ``index`` among ``of``, which come one after another and are shown together.
+
+    made_of: its material: skin, eye, cloth or matte
+    """
 
     kind: Literal["body"] = "body"
     index: int
+    of: int
     name: str
     made_of: str
     color: Point

@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from ringlet.data import limits
 
-VERSION = 14
+VERSION = 15
 
 Place = list[str | int]  # path of a setting in its file: ["shape", 0, "amount"]; empty for the file
 File = Literal["recipe", "shot"]

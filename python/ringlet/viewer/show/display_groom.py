@@ -23,6 +23,8 @@ from ringlet.viewer.project import Project
 from ringlet.viewer.show.maps import texture_of
 from ringlet.viewer.wire import pack
 
+GLIMPSE = 4000  # hairs of the first picture, which stand for all
+
 RAMPS = ("escaping", "relaxing", "tight", "opening")  # of the curl of hairs, along them
 
 # Arrays of the curl of hairs, where these only follow their lock.
@@ -80,6 +82,12 @@ class DisplayGroom:
         return (
             hairs_message(side, self.hairs, self.groom.scalp) if self.hairs else curves_message(side, self.groom.locks)
         )
+
+    def glimpse(self, side: str) -> bytes:
+        """Message with few hairs that stand for all; empty where all are few."""
+        if self.hairs is None or self.count < 2 * GLIMPSE:
+            return b""
+        return hairs_message(side, self.hairs, self.groom.scalp, GLIMPSE)
 
     @property
     def count(self) -> int:
@@ -217,26 +225,29 @@ def without_muted(recipe: Recipe, muted: frozenset[str]) -> Recipe:
     return recipe.model_copy(update=changed)
 
 
-def hairs_message(side: str, hairs: AnyHairs, scalp: Mesh) -> bytes:
-    """Message with hairs, ordered so that any prefix covers all locks evenly."""
+def hairs_message(side: str, hairs: AnyHairs, scalp: Mesh, most: int | None = None) -> bytes:
+    """Message with hairs, ordered so that any prefix covers all locks evenly.
+
+    most: number of the hairs that stand for all, as wide together as these
+    """
     layout = hairs.deformation(scalp.points)
     group = layout.get("group", np.zeros(len(hairs.curves), np.uint8))
     count, points = len(hairs.curves), int(hairs.curves.counts[0])
-    order = spread(np.diff(layout["first"]))
+    order = spread(np.diff(layout["first"]))[:most]
     widths = hairs.curves.point["width"].reshape(count, points)
     widest = widths.max(axis=1)
     unblended = {"other": np.zeros(count), "share": np.zeros(count)}
     blends = {name: layout[name] if len(layout[name]) else zeros for name, zeros in unblended.items()}
     return pack(
         protocol.Hairs.model_validate(
-            {"side": side, "count": count, "points": points, "knots": layout["frizz"].shape[1] // 2}
+            {"side": side, "count": len(order), "points": points, "knots": layout["frizz"].shape[1] // 2}
         ),
         lock=hairs.curves.curve["lock"][order],
         group=group[order],
         **{name: layout[name][order] for name in ("offset", "tip", "join", "flat", "taper", "frizz", "root")},
         **{name: values[order] for name, values in blends.items()},
         **{name: layout[name] for name in ("profile", "hold", "pace", "blend")},
-        width=widest[order],
+        width=widest[order] * (count / len(order)),
         thinning=np.concatenate(
             [_thinning(widths[of], widest[of]) for of in (group == k for k in range(int(group[-1]) + 1))]
         ),

@@ -42,13 +42,13 @@ class VisibleMesh:
     cloth: str = ""
     worn: tuple[Accessory, NDArray] | None = None
 
-    def message(self, index: int, origin: NDArray) -> bytes:
-        """Message with the mesh in its rest pose, relative to an origin [m]."""
+    def message(self, index: int, of: int, origin: NDArray) -> bytes:
+        """Message with the mesh in its rest pose, relative to an origin [m], as one of the scene."""
         mesh = self.mesh
         colors = mesh.colors if mesh.colors is not None else np.empty((0, 3))
         material = "cloth" if self.cloth else material_of(mesh.name)
         return pack(
-            protocol.Body(index=index, name=mesh.name.split("/")[-1], made_of=material, color=mesh.color),
+            protocol.Body(index=index, of=of, name=mesh.name.split("/")[-1], made_of=material, color=mesh.color),
             points=mesh.points - origin,
             triangles=mesh.triangles,
             colors=np.clip(colors, 0.0, 1.0),

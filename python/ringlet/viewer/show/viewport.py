@@ -86,7 +86,7 @@ class Viewport:
         layout = display.hairs.curves if display.hairs else display.groom.locks
         if self._layouts.get(side) is not layout:
             self._layouts[side] = layout
-            self._publisher.publish(f"{side}/hairs", display.layout(side))
+            self._publisher.publish(f"{side}/hairs", display.layout(side), display.glimpse(side))
         self._publish_colors(display, side)
         self._publisher.publish(f"{side}/locks", display.locks(side))
         if side == "a":
@@ -122,7 +122,7 @@ class Viewport:
         self._publisher.clear("body/")
         self._scene = scene
         for index, body in enumerate(self.bodies):
-            self._publisher.publish(f"body/{index}", body.message(index, self._origin))
+            self._publisher.publish(f"body/{index}", body.message(index, len(self.bodies), self._origin))
 
     def _publish_colors(self, display: DisplayGroom, side: str) -> None:
         inputs = self._layouts[side], display_colors.inputs(display.groom)
