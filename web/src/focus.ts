@@ -2,6 +2,8 @@
 // keyboard at the top of the page: it goes to what has the place of the control now.
 
 const CONTROLS = "button, input, select, textarea, summary, a[href], [tabindex]";
+/** Fields in which a text is typed. */
+export const TYPED = "input:not([type=range], [type=checkbox], [type=radio], [type=color]), textarea";
 const AREAS = "dialog, nav, aside, header, main, [role=toolbar], [role=tabpanel], .panel";
 
 /** What tells a control from the others of its area, also after it was built anew. */
@@ -46,6 +48,11 @@ export function keepFocus(root: HTMLElement, otherwise: HTMLElement): void {
     under = target as Element;
   };
   root.addEventListener("pointerdown", press, { capture: true });
+  root.addEventListener("focusout", ({ target }) =>
+    Promise.resolve().then(() => {
+      if (target === last && usable(last as HTMLElement) && document.activeElement !== last) last = null; // it was given up
+    }),
+  );
   root.addEventListener("keydown", () => (under = null), { capture: true });
 
   const keep = () => {
@@ -55,7 +62,8 @@ export function keepFocus(root: HTMLElement, otherwise: HTMLElement): void {
       if (!area.isConnected) continue;
       const all = controls(area);
       const same = all.find((one) => nameOf(one) === name && usable(one));
-      const next = all.slice(index).find(usable) ?? all.slice(0, index).reverse().find(usable);
+      const free = (one: HTMLElement) => usable(one) && !one.matches(TYPED); // where keys stay commands
+      const next = all.slice(index).find(free) ?? all.slice(0, index).reverse().find(free);
       const to = same ?? next;
       if (to) return to.focus({ preventScroll: true });
     }

@@ -90,6 +90,24 @@ test("what takes the edit lock away leaves the focus in the panel, and a dialog 
   expect(focused()).not.toBe(document.body);
 });
 
+test("a note that is given up leaves the focus where keys are no text, and a field that is left does not get it again", async () => {
+  const page = await open();
+  press("a", {}, document.body);
+  expect(focused().tagName).toBe("TEXTAREA");
+  press("Escape");
+  await seen();
+  expect(focused().matches("textarea, input")).toBe(false);
+  expect(focused()).not.toBe(document.body);
+
+  control("Settings").click();
+  number("guides.length").focus();
+  number("guides.length").blur();
+  await seen();
+  page.model.choose("recipe", ["curl"]);
+  await seen();
+  expect(focused()).toBe(document.body);
+});
+
 test("a search that is given up leaves the focus in the picture", async () => {
   const page = await open();
   page.app.viewer.canvas.focus();

@@ -3,6 +3,7 @@
 import "./lined_table.css";
 import "./keys.css";
 import { h } from "../dom";
+import { TYPED } from "../focus";
 import { openDialog } from "./dialog";
 
 /** Sections of the list, in their order. */
@@ -37,7 +38,7 @@ export function bindKey(key: Key): void {
 /** Whether an event belongs to a text that is typed. */
 export function typing(event: Event): boolean {
   const target = event.target as HTMLElement | null;
-  return Boolean(target?.closest?.("input:not([type=range], [type=checkbox], [type=radio], [type=color]), textarea"));
+  return Boolean(target?.closest?.(TYPED));
 }
 
 /** The button that a pointer has pressed, and that has the focus by this alone: keys are meant for the page. */
