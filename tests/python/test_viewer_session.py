@@ -56,6 +56,14 @@ def test_one_page_holds_the_edit_lock_and_the_others_follow(folder: Path):
         assert two.receive("role", leads=True) and one.receive("role", leads=False)
 
 
+def test_a_page_knows_whether_it_leads_before_what_it_may_edit(folder: Path):
+    with serving(folder) as client, page(client) as one, page(client, "two") as two:
+        for each, leads in ((one, True), (two, False)):
+            each.receive("document")
+            assert [message["kind"] for message in each.received[:2]] == ["welcome", "role"]
+            assert each.received[1]["leads"] == leads
+
+
 def test_a_page_that_does_not_answer_hands_the_edit_lock_over(folder: Path, monkeypatch):
     monkeypatch.setattr("ringlet.viewer.edit_lock.ANSWER_AFTER", 0.1)
     with serving(folder) as client, page(client, "one") as one, page(client, "two") as two:

@@ -39,15 +39,19 @@ class Pages:
         return len(self._pages)
 
     def join(self, name: str, welcome: bytes, person: str, *, led: bool) -> Page:
-        """Adds a page, whose first message is ``welcome``. It gets the edit lock when no connected page holds it.
+        """Adds a page, whose first message is ``welcome``; the next says whether it leads, before what it may edit.
+
+        It gets the edit lock when no connected page holds it.
 
         led: whether it held the lock when it was connected last; it does not take it from a page that asked for it
         """
-        page = Page(name, self._publisher.subscribe(welcome))
+        page = Page(name, SendQueue())
+        page.queue.put("welcome", welcome)
         self._presence.join(page, name, person)
         self.lock.join(name, self._names, led=led)
         self._pages.append(page)
         self.send_roles()
+        self._publisher.subscribe(page.queue)
         return page
 
     def leave(self, page: Page) -> None:

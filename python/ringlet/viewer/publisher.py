@@ -72,16 +72,13 @@ class Publisher:
         self._glimpses: dict[str, bytes] = {}
         self._queues: list[SendQueue] = []
 
-    def subscribe(self, first: bytes) -> SendQueue:
-        """Returns a new send queue with the welcome message and all retained messages, those with a glimpse last."""
-        queue = SendQueue()
-        queue.put("welcome", first)
+    def subscribe(self, queue: SendQueue) -> None:
+        """Adds a send queue, with all retained messages, those with a glimpse last."""
         for subject, message in {**self._latest, **self._glimpses}.items():
             queue.put(subject + GLIMPSE if subject in self._glimpses else subject, message)
         for subject in self._glimpses:
             queue.put(subject, self._latest[subject])
         self._queues.append(queue)
-        return queue
 
     def unsubscribe(self, queue: SendQueue) -> None:
         """Removes a send queue."""
