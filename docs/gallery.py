@@ -82,6 +82,9 @@ are drawn smaller than they are. `python docs/gallery_faults.py` takes the forme
 - Finger waves: the last row breaks over the top of the ears, and the part runs on thinly from the crown to the nape.
 - Wolf cut: clumps look matted, and the fringe is torn.
 - Long box braids: some with their roots at the temples hang off the chest.
+- Bantu knots: at the temple, hair of a section lies as a dark tuft beside its knot.
+- Box braids, long braids and twists are shown as they were before all strands of a section took their
+  hair from the whole of it.
 - Cornrows: at the temple, the first hairs of a row begin on a straight line across it, not on the hairline.
 - Flat twists: the rows over the ears are wide.
 - Cornrows and flat twists: tails of neighbouring rows overlap at the nape.

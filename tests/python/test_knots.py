@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
-from ringlet.data.groom import STRAND_RADIUS
+from ringlet.data.groom import SECTION, STRAND_RADIUS
 from ringlet.groom.felt import PROFILE
 from styles import groom, strands_of
 
 from ringlet import UserError
+from ringlet.groom import make_hairs
 
 KNOT = "[[shape]]\nop = 'knot'\nwidth = 3\nheight = 2.4\n"
 
@@ -72,3 +73,23 @@ def test_a_knot_of_few_points_is_refused():
 def test_a_knot_that_acts_nowhere_changes_nothing(more):
     plain = groom("strands = 1", "").locks
     assert np.array_equal(plain.points, groom("strands = 1", KNOT + more).locks.points)
+
+
+def test_hair_of_a_wide_section_comes_to_its_knot_without_gaps():
+    hair = "[hairs]\ndensity = 150\npoints = 140\nroot_falloff = 0.03\nfrizz = 0\nstray = 0"
+    made = groom("strands = 3\nsize = 5", KNOT, "points = 300", hair)
+    locks, hairs = made.locks, make_hairs(made).curves
+    points = hairs.points.reshape(len(hairs), -1, 3).astype(np.float64)
+    section = locks.curve[SECTION]
+    widest = []
+    for one in np.unique(section):
+        middle = locks.roots[section == one].mean(axis=0)
+        paths = points[section[hairs.curve["lock"]] == one] - middle
+        plane = np.linalg.svd(paths[:, 0], full_matrices=False)[2][:2]
+        flat = paths @ plane.T
+        away = np.linalg.norm(flat, axis=2)
+        far = away[:, 0] > 0.35 * away[:, 0].max()
+        half_way = flat[np.arange(len(flat)), (away < 0.5 * away[:, :1]).argmax(axis=1)][far]
+        around = np.sort(np.arctan2(half_way[:, 1], half_way[:, 0]))
+        widest.append(np.diff(around, append=around[0] + 2.0 * np.pi).max())
+    assert np.degrees(np.median(widest)) < 5.0

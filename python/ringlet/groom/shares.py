@@ -39,18 +39,18 @@ def reaches(
 ) -> NDArray[np.float32]:
     """``REACH`` of the strands of sections, for their roots, shape (n,), and sections, shape (n,), in order.
 
-    The share of a strand is the part of its section, without the part line, that is nearest to its root. It should be
-    star-shaped about the root.
+    All strands of a section take their hair from the whole of it, without the part line: it is gathered before
+    it is divided. Were each to take what is nearest, skin would show between their hairs. The section should be
+    star-shaped about the roots.
     """
     if not len(triangle):
         return np.zeros((0, DIRECTIONS), np.float32)
     roots, frames = _core.root_frames(scalp.points, scalp.triangles, triangle, barycentric)
     around = _directions(frames[:, :, 2], 2.0 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS)
-    strands = roots.reshape(len(np.unique(section)), -1, 3)
     low, high = np.zeros((len(roots), DIRECTIONS)), np.full((len(roots), DIRECTIONS), FARTHEST * division.sections.size)
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        has = _has(division, scalp, roots, around, middle, section, strands)
+        has = _has(division, scalp, roots, around, middle, section)
         low, high = np.where(has, middle, low), np.where(has, high, middle)
     return low.astype(np.float32)
 
@@ -62,18 +62,13 @@ def _has(
     around: NDArray,
     reach: NDArray,
     section: NDArray,
-    strands: NDArray,
 ) -> NDArray[np.bool_]:
     """Whether the places at a reach are in the shares of roots, shape (n, DIRECTIONS)."""
     wanted = (roots[:, None] + reach[:, :, None] * around).reshape(-1, 3)
     places, off = _on_scalp(scalp, wanted, np.repeat(_normals(around), DIRECTIONS, axis=0))
     at = division.at(places)
     own = np.repeat(section, DIRECTIONS)
-    count = strands.shape[1]
-    of_section = np.repeat(np.arange(len(strands)), count * DIRECTIONS)
-    nearest = np.linalg.norm(strands[of_section] - places[:, None], axis=2).argmin(axis=1)
     inside = (at[SECTION] == own) & (at[EDGE] >= 0.5 * division.sections.gap)
-    inside &= nearest == np.tile(np.repeat(np.arange(count), DIRECTIONS), len(strands))
     return inside.reshape(reach.shape) & (off.reshape(reach.shape) <= BEYOND[0] + BEYOND[1] * reach)
 
 
