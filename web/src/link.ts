@@ -97,9 +97,9 @@ export class Link {
     return this.owed.some(({ kind }) => CHANGES.includes(kind)) || this.again.length > 0;
   }
 
-  /** Whether all that was said has been heard by the server that is there. */
+  /** Whether all that was said has been heard by the server that is there, and here what it has said so far. */
   get answered(): boolean {
-    return this.socket?.readyState === WebSocket.OPEN && !this.owed.length && !this.again.length;
+    return this.socket?.readyState === WebSocket.OPEN && !this.owed.length && !this.again.length && !this.came.length;
   }
 
   /** Connects, and keeps at it. */

@@ -47,7 +47,9 @@ test("what comes before the page is there is heard in order, and before what com
   link.tell({ hear: ({ kind }) => heard.push(kind), changed: (state) => heard.push(state), leads: () => false });
   Socket.latest.onmessage({ data: data[4] });
   expect(heard.length).toBe(2); // the rest after the page was drawn
+  expect(link.answered).toBe(false);
   vi.advanceTimersByTime(10);
+  expect(link.answered).toBe(true);
   Socket.latest.onmessage({ data: data[5] });
   expect(heard).toEqual(["open", ...data.slice(0, 6).map((one) => decode(one).kind)]);
 });

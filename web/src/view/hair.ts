@@ -34,7 +34,7 @@ import { complete, Slices, type Work } from "./slices";
 import { type LockTable, lockTable } from "./table";
 import { Colours } from "./textures";
 import type { Beam } from "./beam";
-import { Grid, shell, type Surface } from "./grid";
+import { around, Grid, shell, type Surface } from "./grid";
 import { LightVolume } from "./volume";
 
 /** A hair colour: linear reflectance in red, green and blue, and the roughness of the fiber along and around it. */
@@ -413,8 +413,8 @@ export class Hair {
     slices: Slices,
   ): Work {
     if (this.filled !== revision) {
-      const grid = Grid.of(this.reach);
       const bodies = surfaces();
+      const grid = Grid.of(around(this.box, bodies));
       yield* this.update(renderer, this.density.measured(this.all) / this.count, 1, slices);
       const hair = yield* this.density.measure(renderer, grid, this.all, slices);
       const skin = yield* slices.compute(shell(grid, bodies));
@@ -438,13 +438,6 @@ export class Hair {
   /** Which hairs are seen, pixel by pixel: what is drawn from `firstScene`. */
   set seen(points: Texture) {
     this.material.uniforms["seen"].value = points;
-  }
-
-  /** What the light volume covers: the hair, and what it throws shadows on. */
-  private get reach(): Box3 {
-    const box = this.box.clone();
-    box.min.y -= 0.35 * (box.max.y - box.min.y);
-    return box;
   }
 
   seenFrom(eye: Vector3): void {
