@@ -18,7 +18,7 @@ from ringlet.data.extras import need
 from ringlet.data.share import share
 from ringlet.shot import Shot
 
-STILL_FRAME = 40  # the top of the hop, where ringlets float
+STILL_FRAME = 39  # just before the top of the hop: ringlets float, and none stands up yet
 STILL_SECONDS = 30.0  # a slow machine gets a noisier picture, not a longer wait
 TILES = 8  # of the sheet
 MOVING = 1 / 12  # share of the hairs that move in hair.usdc, which keeps it small; the still has all of them
@@ -69,7 +69,7 @@ def run_demo(
                 progress=overall.of("still"),
             )
             run.count(hairs=counts["hairs"], points=counts["points"])
-            run.pictured(still_file, f"Frame {STILL_FRAME}: the top of the hop, where the ringlets float.")
+            run.pictured(still_file, f"Frame {STILL_FRAME}: just before the top of the hop, where the ringlets float.")
         if show:
             show(still_file)
         with run.stage("hairs", hair_file, f"hairs in motion, {MOVING:.0%} of all, each wider"):
