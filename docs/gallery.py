@@ -65,7 +65,7 @@ are drawn smaller than they are. `python docs/gallery_faults.py` takes the forme
 | row | fault | what changed |
 |---|---|---|
 | 1 | hair looked painted: 3A, low bun | the denoiser keeps [single hairs](picture_bench.md#detail-of-hair) |
-| 2 | pointed tufts at roots: box braids, Bantu knots | hair closes over its section; wide ones look like tents |
+| 2 | pointed tufts at roots: box braids, Bantu knots | each strand takes hair from the whole of its section |
 | 3 | wedge at a part, islands at a temple: wash-and-go, fade | hair grows up to a part, and hairlines fade |
 | 4 | columns of one pitch, felt: 3C, 4B | families of several pitches, Z-shaped hairs, neutral black |
 | 5 | beads along locs, skin through a shirt: locs, flat twists | hair is matted, and the bust dressed |
@@ -83,8 +83,8 @@ are drawn smaller than they are. `python docs/gallery_faults.py` takes the forme
 - Wolf cut: clumps look matted, and the fringe is torn.
 - Long box braids: some with their roots at the temples hang off the chest.
 - Bantu knots: at the temple, hair of a section lies as a dark tuft beside its knot.
-- Box braids, long braids and twists are shown as they were before all strands of a section took their
-  hair from the whole of it.
+- Long braids, and looks with a part or sections on their second head, are shown as they were before hair took its place
+  beside a part and in its section anew.
 - Cornrows: at the temple, the first hairs of a row begin on a straight line across it, not on the hairline.
 - Flat twists: the rows over the ears are wide.
 - Cornrows and flat twists: tails of neighbouring rows overlap at the nape.
