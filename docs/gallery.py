@@ -82,9 +82,9 @@ are drawn smaller than they are. `python docs/gallery_faults.py` takes the forme
 - Finger waves: the last row breaks over the top of the ears, and the part runs on thinly from the crown to the nape.
 - Wolf cut: clumps look matted, and the fringe is torn.
 - Long box braids: some with their roots at the temples hang off the chest.
-- Bantu knots: at the temple, hair of a section lies as a dark tuft beside its knot.
-- Long braids, and looks with a part or sections on their second head, are shown as they were before hair took its place
-  beside a part and in its section anew.
+- Bantu knots: at the temple, hair of a section lies in a dark tuft next to its knot.
+- Long braids, and looks with a part or sections on their second head, are shown with the distribution of
+  hair that parts and sections had before.
 - Cornrows: at the temple, the first hairs of a row begin on a straight line across it, not on the hairline.
 - Flat twists: the rows over the ears are wide.
 - Cornrows and flat twists: tails of neighbouring rows overlap at the nape.

@@ -1,6 +1,6 @@
 """Makes docs/images/faults.jpg: crops of pictures of the gallery and the demo, before and after faults were mended.
 
-    .venv/bin/python docs/gallery_faults.py                        f87cbf1e beside the pictures that are here now
+    .venv/bin/python docs/gallery_faults.py                        commit f87cbf1e and the present pictures
     .venv/bin/python docs/gallery_faults.py --before A --after B   those of two commits
 
 A row for each fault, with two places: left the picture of before, right that of after. All are drawn smaller than the

@@ -16,7 +16,7 @@ from ringlet.groom.several import grooms_of
 from ringlet.groom.shares import share_areas
 
 SAMPLES_PER_LOCK = 60
-NEIGHBOURS = 6  # nearest locks that a place beside a part line may belong to
+NEIGHBOURS = 6  # nearest locks that a place near a part line may belong to
 LARGEST_SHARE = 1.5  # of a lock, relative to the median: hair stays sparse where locks are
 PER_CM2 = 1e4  # 1/cm² in 1/m²
 

@@ -23,7 +23,7 @@ from ringlet.groom.hair_curl import Placed
 from ringlet.groom.hair_settings import IDS_PER_LOCK, HairSettings, fiber_settings, hair_values, lock_radii
 from ringlet.groom.operators.woven import JOIN
 from ringlet.groom.part_line import TO_PART
-from ringlet.groom.shares import LAID, REACH, beside_part, fed, gathered, scattered
+from ringlet.groom.shares import LAID, REACH, cells_at_part, fed, gathered, scattered
 from ringlet.groom.thinning import thinned
 from ringlet.groom.values import Values
 
@@ -60,8 +60,8 @@ def place_hairs(groom: Groom, settings: HairSettings, fraction: float, wider: bo
     spread = np.maximum(own("root_radius"), np.sqrt(areas / np.pi))
     around = spread[lock, None] * np.einsum("hxk,hk->hx", frames[lock][:, :, :2], disk)
     if TO_PART in locks.curve:
-        beside, offsets = beside_part(roots, frames, locks.curve[TO_PART].astype(np.float64), spread, lock, disk)
-        around[beside] = offsets
+        at_part, offsets = cells_at_part(roots, frames, locks.curve[TO_PART].astype(np.float64), spread, lock, disk)
+        around[at_part] = offsets
     places = roots[lock] + around
     joins = lock_joins(locks)[lock]
     _root_in_rows(groom, settings, first, number, places, joins)

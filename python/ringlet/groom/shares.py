@@ -195,7 +195,7 @@ def scattered(reach: NDArray[np.float32], roots: NDArray, normals: NDArray, disk
     return roots + _carried(reach, disk, x, np.cross(normals, x))
 
 
-def beside_part(
+def cells_at_part(
     roots: NDArray, frames: NDArray, to_part: NDArray, spread: NDArray, lock: NDArray, disk: NDArray
 ) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
     """Hairs of the locks next to a part line (n,), and their offsets from the root of their lock [m], shape (n, 3).

@@ -54,7 +54,7 @@ float facing(float cosine, float radius) {
 void main() {
   vec3 N = normalize(upward), V = normalize(eye - place);
   if (dot(N, V) < 0.0) N = -N;
-  float voxel = gridSize.x / float(textureSize(gridDepth, 0).x), NV = max(dot(N, V), 1e-3);
+  float voxel = voxelSize(), NV = max(dot(N, V), 1e-3);
   vec4 depth = opticalDepth(place + 0.5 * voxel * N), past = pastBodies(place + voxel * N); // above the shell of folds
   float disorder;
   vec3 light = albedo * scattered(place + 1.5 * voxel * N, N, vec3(-2.0), disorder); // irradiance over π

@@ -5,7 +5,7 @@ import { type Box3, Vector3 } from "three";
 /** Voxels along the longest side of the grid. */
 const VOXELS = 64;
 const SHELL = 6; // optical depth of a voxel of skin
-const BESIDE = 0.35; // how far from hair the grid reaches, in heights of the hair
+const MARGIN = 0.35; // how far the grid reaches around the hair and below it, in heights of the hair
 
 /** The voxels: how many along each axis, their size and first corner [m]. */
 export class Grid {
@@ -50,12 +50,12 @@ export interface Surface {
   triangles: Uint32Array;
 }
 
-/** What the grid covers: the hair, what it throws shadows on below it, and bodies beside it, whose shadows would else end at its borders. */
+/** What the grid covers: the hair, what it throws shadows on below it, and the surfaces within a margin around it: a place outside of the grid has the light of its border. */
 export function around(hair: Box3, bodies: Iterable<Surface>): Box3 {
-  const beside = BESIDE * (hair.max.y - hair.min.y);
+  const margin = MARGIN * (hair.max.y - hair.min.y);
   const box = hair.clone();
-  box.min.y -= beside;
-  const within = box.clone().expandByVector(new Vector3(beside, 0, beside));
+  box.min.y -= margin;
+  const within = box.clone().expandByVector(new Vector3(margin, 0, margin));
   const place = new Vector3();
   for (const { points } of bodies)
     for (let i = 0; i < points.length; i += 3) if (within.containsPoint(place.fromArray(points, i))) box.expandByPoint(place);
